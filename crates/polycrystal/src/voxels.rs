@@ -10,6 +10,7 @@ mod graph;
 mod labels;
 mod lattice;
 mod pattern;
+mod slabs;
 mod staircase;
 mod surface;
 mod tuning;

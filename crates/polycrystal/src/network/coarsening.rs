@@ -36,10 +36,21 @@ struct Coarsening<'a> {
     sides: &'a [[Side; 2]],
     /// The triangles at each point, in order.
     at_points: Vec<Vec<u32>>,
+    /// Of each point: the last sweep in which a triangle at it changed.
+    changed_in: Vec<u32>,
+    /// Of collapses and flips in turn.
+    sweep: u32,
 }
+
+/// The sweep before the first; one in which no first sweep takes an interest.
+const BEFORE: u32 = 2;
+const NEVER: u32 = 0;
 
 /// A triangle at an edge, and by how much it is moved from there.
 type AtEdge = (u32, Translation);
+
+/// Triangles, and the corners that they are to have; none if they go.
+type Changes = Vec<(u32, Option<[PeriodicVertex; 3]>)>;
 
 /// What a point is part of, in the order of how free it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,14 +75,30 @@ pub(crate) fn coarsened(
     if limits.iter().flatten().all(|limit| *limit == 0.0) {
         return triangles.iter().copied().map(Some).collect();
     }
-    let mut at_points = vec![Vec::new(); points.len()];
-    for (triangle, corners) in (0u32..).zip(triangles) {
-        corners.iter().for_each(|corner| at_points[corner.vertex as usize].push(triangle));
-    }
     let triangles = triangles.iter().copied().map(Some).collect();
-    let mut coarsening = Coarsening { domain, points, limits, triangles, sides, at_points };
+    coarsened_around(domain, points, limits, triangles, sides, &mut vec![true; points.len()])
+}
+
+/// As [`coarsened`], of the triangles that are there, but only around points that are marked. In the end those are marked around which triangles changed.
+pub(crate) fn coarsened_around(
+    domain: &Domain,
+    points: &[DVec3],
+    limits: &[Option<f64>],
+    triangles: Vec<Option<[PeriodicVertex; 3]>>,
+    sides: &[[Side; 2]],
+    marked: &mut [bool],
+) -> Vec<Option<[PeriodicVertex; 3]>> {
+    let mut at_points = vec![Vec::new(); points.len()];
+    for (triangle, corners) in (0u32..).zip(&triangles) {
+        corners.iter().flatten().for_each(|corner| at_points[corner.vertex as usize].push(triangle));
+    }
+    let changed_in = marked.iter().map(|marked| if *marked { BEFORE } else { NEVER }).collect();
+    let mut coarsening =
+        Coarsening { domain, points, limits, triangles, sides, at_points, changed_in, sweep: BEFORE };
     // Each round leaves fewer triangles, or larger least angles: six rounds of 60 grains of 3:3:1 leave nothing to do.
     while coarsening.close_short_edges() + coarsening.flip_edges() > 0 {}
+    let is_changed = coarsening.changed_in.iter().map(|sweep| *sweep > BEFORE);
+    marked.iter_mut().zip(is_changed).for_each(|(marked, is_changed)| *marked = is_changed);
     coarsening.triangles
 }
 
@@ -87,14 +114,25 @@ impl Coarsening<'_> {
             .collect();
         short.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         short.dedup();
+        self.sweep += 1;
         let mut collapsed = 0;
         for (_, [first, second]) in short {
+            let ends = [first.vertex, second.vertex];
+            let mut around = ends.iter().flat_map(|end| &self.at_points[*end as usize]);
+            if !around.any(|triangle| self.is_new(self.corners(*triangle))) {
+                continue;
+            }
             let back =
                 PeriodicVertex { vertex: first.vertex, translation: first.translation - second.translation };
             let mut ways = [(first.vertex, second), (second.vertex, back)].into_iter();
             collapsed += usize::from(ways.any(|(from, to)| self.collapse(from, to)));
         }
         collapsed
+    }
+
+    /// Whether a triangle at some corner changed since the last sweep of this kind began: where none did, what was refused then would be again.
+    fn is_new(&self, corners: [PeriodicVertex; 3]) -> bool {
+        corners.iter().any(|corner| self.changed_in[corner.vertex as usize] + 2 >= self.sweep)
     }
 
     fn place(&self, corner: PeriodicVertex) -> DVec3 {
@@ -117,20 +155,22 @@ impl Coarsening<'_> {
     }
 
     /// The triangles at an edge.
-    fn at_edge(&self, [from, to]: [PeriodicVertex; 2]) -> Vec<AtEdge> {
-        let at_edge = |triangle: &u32| {
+    fn at_edge(&self, [from, to]: [PeriodicVertex; 2]) -> impl Iterator<Item = AtEdge> {
+        self.at_points[from.vertex as usize].iter().filter_map(move |triangle| {
             let corners = self.corners(*triangle);
+            if corners.iter().all(|corner| corner.vertex != to.vertex) {
+                return None;
+            }
             let moved = translation_of(corners, from.vertex) - from.translation;
             corners.contains(&to.moved(moved)).then_some((*triangle, moved))
-        };
-        self.at_points[from.vertex as usize].iter().filter_map(at_edge).collect()
+        })
     }
 
     /// Whether an edge lies inside a boundary.
-    fn is_inside(&self, at_edge: &[AtEdge]) -> bool {
-        let [first, second] = at_edge[..] else { return false };
-        let [first, second] = [first, second].map(|(triangle, moved)| self.sides_from(triangle, moved));
-        first == second
+    fn is_inside(&self, ends: [PeriodicVertex; 2]) -> bool {
+        let mut at_edge = self.at_edge(ends).map(|(triangle, moved)| self.sides_from(triangle, moved));
+        let [first, second, third] = std::array::from_fn(|_| at_edge.next());
+        first.is_some() && first == second && third.is_none()
     }
 
     /// What lies beside a triangle, as seen from where all is moved.
@@ -141,7 +181,7 @@ impl Coarsening<'_> {
     fn part(&self, point: u32) -> Part {
         let own = PeriodicVertex { vertex: point, translation: Translation::ZERO };
         let mut along = self.beside(point);
-        along.retain(|other| !self.is_inside(&self.at_edge([own, *other])));
+        along.retain(|other| !self.is_inside([own, *other]));
         match along[..] {
             [] => Part::Boundary,
             [before, after] => Part::Line([before, after]),
@@ -162,7 +202,7 @@ impl Coarsening<'_> {
     /// Moves a point along an edge to its other end, as seen from the point, if that is allowed and good; returns whether.
     fn collapse(&mut self, from: u32, to: PeriodicVertex) -> bool {
         let ends = [PeriodicVertex { vertex: from, translation: Translation::ZERO }, to];
-        let at_edge = self.at_edge(ends);
+        let at_edge: Vec<AtEdge> = self.at_edge(ends).collect();
         if at_edge.is_empty() {
             return false;
         }
@@ -174,7 +214,7 @@ impl Coarsening<'_> {
             .collect();
         // The cheapest first.
         let is_good = self.is_good(&moved, ends)
-            && self.may_collapse(ends, &at_edge)
+            && self.may_collapse(ends)
             && self.stays_closed(&moved, to.vertex, collapses);
         if !is_good {
             return false;
@@ -185,7 +225,7 @@ impl Coarsening<'_> {
     }
 
     /// Whether the first end of an edge may go to the other for what both are part of.
-    fn may_collapse(&self, ends: [PeriodicVertex; 2], at_edge: &[AtEdge]) -> bool {
+    fn may_collapse(&self, ends: [PeriodicVertex; 2]) -> bool {
         let [from, to] = ends;
         match self.part(from.vertex) {
             Part::Boundary => true,
@@ -193,7 +233,7 @@ impl Coarsening<'_> {
             Part::Node => {
                 let limit = self.limit(ends).map_or(0.0, |limit| SHORT_LINE * limit);
                 self.length(ends) < limit
-                    && !self.is_inside(at_edge)
+                    && !self.is_inside(ends)
                     && self.part(to.vertex) == Part::Node
                     && self.keeps_walls(from.vertex, to.vertex)
             }
@@ -201,25 +241,30 @@ impl Coarsening<'_> {
     }
 
     /// Gives triangles other corners, or takes them away, unless boundaries fold by that; returns whether.
-    fn change(&mut self, changed: Vec<(u32, Option<[PeriodicVertex; 3]>)>) -> bool {
+    fn change(&mut self, changed: Changes) -> bool {
         let triangles: Vec<u32> = changed.iter().map(|(triangle, _)| *triangle).collect();
-        let set_all = |own: &mut Self, all: Vec<_>| -> Vec<_> {
-            all.into_iter().map(|(triangle, corners)| (triangle, own.set(triangle, corners))).collect()
-        };
-        let old = set_all(self, changed);
+        let old = self.set_all(changed);
         let after = self.sharpest(&triangles);
         let is_above = |least: [f64; 2]| after.iter().zip(least).all(|(after, least)| *after >= least);
-        if is_above(LEAST_COSINES) {
-            return true;
+        if !is_above(LEAST_COSINES) {
+            let new = self.set_all(old.clone());
+            let before = self.sharpest(&triangles);
+            let least = [0, 1].map(|place| before[place].min(LEAST_COSINES[place]) - ROUNDING);
+            if !is_above(least) {
+                return false;
+            }
+            self.set_all(new);
         }
-        let new = set_all(self, old);
-        let before = self.sharpest(&triangles);
-        let least = [0, 1].map(|place| before[place].min(LEAST_COSINES[place]) - ROUNDING);
-        let stays_flat = is_above(least);
-        if stays_flat {
-            set_all(self, new);
+        let new = triangles.iter().filter_map(|triangle| self.triangles[*triangle as usize]);
+        for corner in old.into_iter().filter_map(|(_, corners)| corners).chain(new).flatten() {
+            self.changed_in[corner.vertex as usize] = self.sweep;
         }
-        stays_flat
+        true
+    }
+
+    /// Gives triangles other corners, and returns the ones they had.
+    fn set_all(&mut self, all: Changes) -> Changes {
+        all.into_iter().map(|(triangle, corners)| (triangle, self.set(triangle, corners))).collect()
     }
 
     /// Gives a triangle other corners, and returns the ones it had.
@@ -242,15 +287,14 @@ impl Coarsening<'_> {
         for triangle in triangles {
             let Some(corners) = self.triangles[*triangle as usize] else { continue };
             for ends in edges(corners) {
-                let at_edge = self.at_edge(ends);
-                let least = &mut least[usize::from(!self.is_inside(&at_edge))];
+                let least = &mut least[usize::from(!self.is_inside(ends))];
                 let away =
                     |(triangle, moved): AtEdge| self.away_from(ends.map(|end| end.moved(moved)), triangle);
-                let is_own = |other: &&AtEdge| other.0 == *triangle;
-                let Some(own) = at_edge.iter().find(is_own) else { continue };
-                let own = away(*own);
-                for other in at_edge.iter().filter(|other| !is_own(other)) {
-                    *least = least.min(-own.dot(away(*other)));
+                let is_own = |other: &AtEdge| other.0 == *triangle;
+                let Some(own) = self.at_edge(ends).find(is_own) else { continue };
+                let own = away(own);
+                for other in self.at_edge(ends).filter(|other| !is_own(other)) {
+                    *least = least.min(-own.dot(away(other)));
                 }
             }
         }
@@ -350,9 +394,12 @@ impl Coarsening<'_> {
 
     /// Flips edges inside boundaries that make the least angle of their two triangles larger, and returns how many.
     fn flip_edges(&mut self) -> usize {
+        self.sweep += 1;
         let mut flipped = 0;
         for triangle in 0..self.triangles.len() {
-            let Some(corners) = self.triangles[triangle] else { continue };
+            let Some(corners) = self.triangles[triangle].filter(|corners| self.is_new(*corners)) else {
+                continue;
+            };
             let flip = edges(corners).find(|ends| self.flip(*ends));
             flipped += usize::from(flip.is_some());
         }
@@ -360,11 +407,10 @@ impl Coarsening<'_> {
     }
 
     fn flip(&mut self, ends: [PeriodicVertex; 2]) -> bool {
-        let at_edge = self.at_edge(ends);
-        let [first, second] = at_edge[..] else { return false };
-        if !self.is_inside(&at_edge) || self.limit(ends).is_none() {
+        if self.limit(ends).is_none() || !self.is_inside(ends) {
             return false;
         }
+        let [first, second] = self.at_edge(ends).collect::<Vec<_>>()[..] else { return false };
         // Both as seen from the first.
         let ends = ends.map(|end| end.moved(first.1));
         let apart = second.1 - first.1;
@@ -373,7 +419,7 @@ impl Coarsening<'_> {
         let start = one.iter().position(|corner| !ends.contains(corner)).unwrap_or(0);
         let [top, from, to] = [0, 1, 2].map(|step| one[(start + step) % 3]);
         let Some(bottom) = other.into_iter().find(|corner| !ends.contains(corner)) else { return false };
-        if top.vertex == bottom.vertex || !self.at_edge([top, bottom]).is_empty() {
+        if top.vertex == bottom.vertex || self.at_edge([top, bottom]).next().is_some() {
             return false;
         }
         let (left, right) = ([top, from, bottom], [top, bottom, to]);

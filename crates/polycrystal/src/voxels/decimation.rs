@@ -6,12 +6,12 @@ use voronoi::{CellId, Domain, PeriodicVertex, Translation, Wall};
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
 use crate::mesh::id::id;
-use crate::network::coarsening::coarsened;
 use crate::network::grain_complex::limits;
 use crate::network::line_coarsening::coarsened_segments;
 use crate::voxels::bending::Boxes;
 use crate::voxels::elements::{CutFaces, ElementList};
 use crate::voxels::lattice::Lattice;
+use crate::voxels::slabs::Slabs;
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tuning::VoxelTuning;
@@ -45,7 +45,15 @@ impl Decimation<'_> {
             ElementList::Triangles(triangles) => {
                 let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(standing)).collect();
                 let limits = self.limits(is_held, triangles.iter().map(|corners| &corners[..]).zip(&sides));
-                let left = coarsened(self.domain, points, &limits, &triangles, &sides);
+                let slabs = Slabs {
+                    domain: self.domain,
+                    points,
+                    limits: &limits,
+                    sides: &sides,
+                    axis: self.lattice.longest_axis(),
+                    thickness: self.tuning.slab * self.shortest_edge,
+                };
+                let left = slabs.coarsened(&triangles);
                 let (kept, triangles) = renumbered(points.len(), &left);
                 (
                     left.iter().map(Option::is_some).collect::<Vec<_>>(),

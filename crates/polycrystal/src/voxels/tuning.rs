@@ -28,6 +28,8 @@ pub struct VoxelTuning {
     /// How far a point that is left may move from its place along each axis, so that grains have their volumes again: chords of curved boundaries take some. With `within`,
     /// edges of three voxels left balls of twelve voxels without theirs.
     pub within_when_decimated: f64,
+    /// Thickness of the slabs in which edges collapse side by side, in units of the shortest edge asked for: many for all threads, and most of each away from its borders.
+    pub slab: f64,
     /// Rounds of decimation, each of which leaves the points around faults of the one before; then nothing is decimated.
     pub decimations: usize,
     /// How far around a fault points stay, in units of the shortest edge asked for.
@@ -49,6 +51,7 @@ impl Default for VoxelTuning {
             longest_motion: 0.25,
             longest_of_grain: 0.25,
             within_when_decimated: 1.0,
+            slab: 10.0,
             decimations: 8,
             held_around: 2.0,
         }
