@@ -617,3 +617,73 @@ fn points_moved_a_little_are_found() {
         assert!(faults.iter().any(|fault| fault["kind"] == "wrong volume"), "{name}: {faults:?}");
     }
 }
+
+/// Two tetrahedra with a face in common, each a grain, as a file for Abaqus.
+const TETRAHEDRA: &str = "\
+*NODE, NSET=NODES
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 0., 1., 0.
+4, 0., 0., 1.
+5, 1., 1., 1.
+*ELEMENT, TYPE=C3D4, ELSET=ELEMENTS
+1, 1, 2, 3, 4
+2, 2, 3, 4, 5
+*ELSET, ELSET=GRAIN_0
+1,
+*ELSET, ELSET=GRAIN_1, GENERATE
+2, 2, 1
+*NSET, NSET=X0
+1, 3, 4
+*NSET, NSET=X1
+2, 5
+*NSET, NSET=Y0
+1, 2, 4
+*NSET, NSET=Y1
+3, 5
+*NSET, NSET=Z0
+1, 2, 3
+*NSET, NSET=Z1
+4, 5
+";
+
+#[test]
+fn tetrahedra_are_checked_like_networks() {
+    let workplace = Workplace::new();
+    workplace.put("a.inp", TETRAHEDRA);
+    let good = report(&workplace, "a.inp", 0);
+    assert_eq!(good["volumes"].to_string(), "[[0,0.16666666666666666],[1,0.3333333333333333]]");
+    assert_eq!(good["node_sets"].as_array().unwrap().len(), 6);
+    for (from, to, kind, message) in [
+        ("2, 2, 3, 4, 5", "2, 3, 2, 4, 5", "inverted", "tetrahedron 2 has the volume -3.333e-1"),
+        ("2, 2, 1\n", "1, 2, 1\n", "two grains", "tetrahedron 1 is part of the grains 0 and 1"),
+        ("1, 3, 4\n", "1, 3\n", "incomplete set", "the set X0 lacks 1 nodes, such as that at node 4"),
+        ("1., 1., 1.\n", "1., 1., 1.\n6, 2., 2., 2.\n", "unused node", "node 6 is part of no element"),
+    ] {
+        assert!(TETRAHEDRA.contains(from), "{from}");
+        workplace.put("a.inp", TETRAHEDRA.replacen(from, to, 1));
+        let bad = report(&workplace, "a.inp", FAILED);
+        let faults = bad["faults"].as_array().unwrap();
+        assert!(
+            faults.iter().any(|fault| fault["kind"] == kind && fault["message"] == message),
+            "{faults:?}"
+        );
+        workplace.command("check a.inp").assert().code(FAILED);
+    }
+    for (from, to, message) in [
+        ("C3D4", "C3D8", "line 8: elements of the type C3D8 are not checked; give C3D4, C3D10 or COH3D6"),
+        ("1, 2, 3, 4\n2", "1, 2, 3, 9\n2", "line 8: there is no node 9"),
+        ("2, 1., 0., 0.", "1, 1., 0., 0.", "line 3: node 1 comes a second time"),
+        ("5, 1., 1., 1.", "5, 1., 1., one", "line 6: 'one' is no number that fits here"),
+        (
+            "*ELEMENT",
+            "*ELEMENTS",
+            "holds no tetrahedra; give a volume mesh, or a network as .vtp, .vtu or .vtk",
+        ),
+    ] {
+        assert!(TETRAHEDRA.contains(from), "{from}");
+        workplace.put("a.inp", TETRAHEDRA.replacen(from, to, 1));
+        let output = workplace.command("check a.inp").assert().code(FAILED).stdout("").get_output().clone();
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), format!("error: a.inp: {message}\n"));
+    }
+}

@@ -2,6 +2,7 @@
 //! meshio, trimesh and orix.
 #![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
 
+mod checked_volumes;
 mod corrupt;
 mod evolver;
 mod grids;

@@ -17,7 +17,7 @@ use crate::tools::{tetrahedra, text};
 use crate::workplace::{BOX, config, write};
 
 /// Few grains with large elements.
-fn coarse(seeds: usize) -> Config {
+pub fn coarse(seeds: usize) -> Config {
     let mut config = Config { seeds: SeedSource::Random { count: seeds }, ..config(Dimension::Three, 0.3) };
     config.file.voxels = None;
     config.elements.elements_per_grain = Some(3.0);
@@ -25,7 +25,7 @@ fn coarse(seeds: usize) -> Config {
 }
 
 /// Filled with tetrahedra; nothing where Gmsh is not there.
-fn filled(test: &str, config: &Config) -> Option<Polycrystal> {
+pub fn filled(test: &str, config: &Config) -> Option<Polycrystal> {
     let made = make_polycrystal(config, &|_, _, _| ()).unwrap().cut_if_asked().unwrap();
     match made.remeshed_if_asked().unwrap().filled() {
         Err(error @ grainsmooth::Error::NoGmsh { .. }) => {
@@ -37,7 +37,7 @@ fn filled(test: &str, config: &Config) -> Option<Polycrystal> {
 }
 
 /// Boxes with walls, with periods and whole grains, and with periods and grains that are cut.
-const BOXES: [(BVec3, PeriodicCut); 3] =
+pub const BOXES: [(BVec3, PeriodicCut); 3] =
     [(BVec3::FALSE, PeriodicCut::Wrap), (BVec3::TRUE, PeriodicCut::Wrap), (BVec3::TRUE, PeriodicCut::Box)];
 
 /// Runs a script that fails where the files in a folder are not as expected; false where Python is not there.

@@ -1,3 +1,4 @@
 //! What `grainsmooth check` says.
 
 pub(crate) mod report;
+pub(crate) mod volume;

@@ -6,3 +6,4 @@ pub(crate) mod seed_file;
 pub(crate) mod size_file;
 pub(crate) mod tess;
 pub(crate) mod texture_file;
+pub(crate) mod volume_file;

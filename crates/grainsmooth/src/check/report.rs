@@ -148,12 +148,7 @@ fn in_words(fault: &Fault) -> String {
 
 impl fmt::Display for CheckReport {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = match self.faults.len() {
-            0 => "good".to_owned(),
-            1 => "1 fault".to_owned(),
-            count => format!("{count} faults"),
-        };
-        writeln!(out, "{}: {verdict}", self.file)?;
+        write_verdict(&self.file, &self.faults, out)?;
         writeln!(
             out,
             "  network     {} grains, {} boundaries by {}",
@@ -183,17 +178,35 @@ impl fmt::Display for CheckReport {
         if let Some(map) = &self.map {
             write!(out, "\n{map}")?;
         }
-        for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
-            for fault in faults.iter().take(NAMED) {
-                write!(out, "\n  {:18}{}", fault.kind, fault.message)?;
-                if let Some([x, y, z]) = fault.position {
-                    write!(out, ", at ({x}, {y}, {z})")?;
-                }
-            }
-            if faults.len() > NAMED {
-                write!(out, "\n  {:18}and {} more", faults[0].kind, faults.len() - NAMED)?;
+        write_faults(&self.faults, out)
+    }
+}
+
+/// Writes a line for each fault, of each kind the first ones.
+pub(super) fn write_faults(faults: &[ReportedFault], out: &mut fmt::Formatter<'_>) -> fmt::Result {
+    for faults in faults.chunk_by(|a, b| a.kind == b.kind) {
+        for fault in faults.iter().take(NAMED) {
+            write!(out, "\n  {:18}{}", fault.kind, fault.message)?;
+            if let Some([x, y, z]) = fault.position {
+                write!(out, ", at ({x}, {y}, {z})")?;
             }
         }
-        Ok(())
+        if faults.len() > NAMED {
+            write!(out, "\n  {:18}and {} more", faults[0].kind, faults.len() - NAMED)?;
+        }
+    }
+    Ok(())
+}
+
+/// The first words of a report: the file, and whether something is wrong.
+pub(super) fn write_verdict(
+    file: &str,
+    faults: &[ReportedFault],
+    out: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
+    match faults.len() {
+        0 => writeln!(out, "{file}: good"),
+        1 => writeln!(out, "{file}: 1 fault"),
+        count => writeln!(out, "{file}: {count} faults"),
     }
 }

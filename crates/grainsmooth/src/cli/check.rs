@@ -6,17 +6,18 @@ use clap::{Arg, Args};
 
 use crate::MapOptions;
 
-/// Check grain networks: grains closed, orientation consistent, no folds, crossings or duplicate points
+/// Check grain networks: grains closed, orientation consistent, no folds, crossings or duplicate points; and volume meshes
 ///
 /// Reads triangles (in the plane: lines) with two labels each, from the cell array FaceLabels, boundary_labels or
-/// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them.
+/// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them. Also reads tetrahedra from .inp, .msh, .bdf and .vtu: they must fit together, none inverted, sets of grains, sides and
+/// boundaries must be complete, and nodes tied to others whole periods away.
 #[derive(Debug, Args)]
 #[command(
     mut_args = of_map,
     after_help = "Exit status: 0 all good, 1 something is wrong or unreadable, 2 a mistake on the command line."
 )]
 pub struct CheckArguments {
-    /// Files to check: .vtp, .vtu or .vtk
+    /// Files to check: .vtp, .vtu or .vtk; volume meshes: .inp, .msh, .bdf or .vtu
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
 

@@ -61,7 +61,7 @@ impl VolumeMesh {
 /// A lower bound of the Jacobian determinant of an element of second order, as a share of what it is with straight edges.
 ///
 /// The determinant is a cubic polynomial, and nowhere less than the least of its Bernstein coefficients. A. Johnen, J.-F. Remacle, C. Geuzaine, Journal of Computational Physics 233 (2013) 359.
-fn least_jacobian_share(corners: [DVec3; 4], middles: [DVec3; 6]) -> f64 {
+pub(crate) fn least_jacobian_share(corners: [DVec3; 4], middles: [DVec3; 6]) -> f64 {
     // The derivative by a barycentric coordinate, which is linear, at a corner.
     let derivative = |by: usize, at: usize| match by == at {
         true => corners[at] * 3.0,

@@ -1,0 +1,101 @@
+//! Whether tetrahedra fit together: face to face, node to node.
+
+use std::collections::BTreeMap;
+
+use super::Found;
+use crate::VolumeFile;
+use crate::volume_mesh::element_faces::FACES;
+
+/// The faces of all tetrahedra, by their corners in order, with the tetrahedra on both sides.
+pub(super) struct Faces {
+    by_corners: BTreeMap<[u32; 3], Vec<u32>>,
+}
+
+pub(super) fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
+    corners.sort_unstable();
+    corners
+}
+
+impl Faces {
+    pub(super) fn new(file: &VolumeFile) -> Self {
+        let mut by_corners: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
+        for (element, corners) in (0u32..).zip(&file.tetrahedra) {
+            for face in FACES {
+                by_corners.entry(sorted(face.map(|corner| corners[corner]))).or_default().push(element);
+            }
+        }
+        Self { by_corners }
+    }
+
+    /// The tetrahedra at a face.
+    pub(super) fn at(&self, corners: [u32; 3]) -> &[u32] {
+        self.by_corners.get(&sorted(corners)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The faces of a single tetrahedron.
+    pub(super) fn outer(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.by_corners.iter().filter(|(_, at)| at.len() == 1).map(|(corners, _)| *corners)
+    }
+
+    /// The faces between tetrahedra of different grains.
+    pub(super) fn between_grains<'a>(&'a self, file: &'a VolumeFile) -> impl Iterator<Item = [u32; 3]> + 'a {
+        let differ = |at: &[u32]| match at {
+            [a, b] => file.grains[*a as usize] != file.grains[*b as usize],
+            _ => false,
+        };
+        self.by_corners.iter().filter(move |(_, at)| differ(at)).map(|(corners, _)| *corners)
+    }
+}
+
+pub(super) fn check(file: &VolumeFile, faces: &Faces, found: &mut Found) {
+    for (corners, at) in faces.by_corners.iter().filter(|(_, at)| at.len() > 2) {
+        let names: Vec<String> =
+            at.iter().map(|element| file.element_numbers[*element as usize].to_string()).collect();
+        let message = format!("tetrahedra {} share a face", names.join(", "));
+        found.push("torn", message, Some(file.place(corners[0])));
+    }
+    check_nodes(file, found);
+    check_prisms(file, found);
+}
+
+/// All nodes are used, and no two in one place but those that cohesive elements join.
+fn check_nodes(file: &VolumeFile, found: &mut Found) {
+    let mut is_used = vec![false; file.points.len()];
+    let of_elements = file.tetrahedra.iter().flatten().chain(file.middles.iter().flatten());
+    let all = of_elements.chain(file.prisms.iter().flatten()).chain(&file.control_nodes);
+    all.for_each(|node| is_used[*node as usize] = true);
+    for node in (0u32..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(node, _)| node) {
+        let message = format!("node {} is part of no element", file.node(node));
+        found.push("unused node", message, Some(file.place(node)));
+    }
+    if !file.prisms.is_empty() {
+        return;
+    }
+    let is_control = |node: &u32| file.control_nodes.contains(node);
+    let mut places: Vec<([u64; 3], u32)> = (0u32..)
+        .zip(&file.points)
+        .filter(|(node, _)| !is_control(node))
+        .map(|(node, place)| (place.to_array().map(|coordinate| (coordinate + 0.0).to_bits()), node))
+        .collect();
+    places.sort_unstable();
+    for same in places.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
+        let names: Vec<String> = same.iter().map(|(_, node)| file.node(*node).to_string()).collect();
+        let message =
+            format!("nodes {} are in one place, where elements do not hang together", names.join(", "));
+        found.push("torn", message, Some(file.place(same[0].1)));
+    }
+}
+
+/// The two sides of a cohesive element lie on each other.
+fn check_prisms(file: &VolumeFile, found: &mut Found) {
+    for [a, b, c, d, e, f] in &file.prisms {
+        for (one, other) in [(a, d), (b, e), (c, f)] {
+            if file.place(*one) != file.place(*other) {
+                let [one, other] = [one, other].map(|node| file.node(*node));
+                let message =
+                    format!("a cohesive element joins the nodes {one} and {other}, which are apart");
+                found.push("torn", message, Some(file.place(*a)));
+            }
+        }
+    }
+}
