@@ -675,15 +675,15 @@ fn tetrahedra_are_checked_like_networks() {
         ("1, 2, 3, 4\n2", "1, 2, 3, 9\n2", "line 8: there is no node 9"),
         ("2, 1., 0., 0.", "1, 1., 0., 0.", "line 3: node 1 comes a second time"),
         ("5, 1., 1., 1.", "5, 1., 1., one", "line 6: 'one' is no number that fits here"),
-        (
-            "*ELEMENT",
-            "*ELEMENTS",
-            "holds no tetrahedra; give a volume mesh, or a network as .vtp, .vtu or .vtk",
-        ),
+        ("*ELEMENT", "*ELEMENTS", "line 11: there is no element 1"),
     ] {
         assert!(TETRAHEDRA.contains(from), "{from}");
         workplace.put("a.inp", TETRAHEDRA.replacen(from, to, 1));
         let output = workplace.command("check a.inp").assert().code(FAILED).stdout("").get_output().clone();
         assert_eq!(String::from_utf8(output.stderr).unwrap(), format!("error: a.inp: {message}\n"));
     }
+    workplace.put("a.inp", "*NODE\n1, 0., 0., 0.\n");
+    let message =
+        "error: a.inp: holds no tetrahedra; give a volume mesh, or a network as .vtp, .vtu or .vtk\n";
+    workplace.command("check a.inp").assert().code(FAILED).stderr(message);
 }
