@@ -244,7 +244,7 @@ fn spread_tells_where_orientations_drift() {
     // The mean of |k| for k from -15 to 15.
     assert!(
         line(&said, "spread")
-            .starts_with("7.74 degrees from the mean orientation (GOS), at most 7.74; 1 grains above 5"),
+            .starts_with("7.74 degrees from the mean orientation (GOS), at most 7.74; 1 grain above 5"),
         "{said}"
     );
     let table = text(&workplace, "a.csv");
