@@ -33,8 +33,8 @@ fn smoothed_grains_are_grains() {
         workplace.run(&format!("--seeds 12 -n 0 --texture random -o in.{extension}"));
         let said = workplace.run(&format!("mesh loop in.{extension} -n 2 -o out.{extension}"));
         for line in [
-            "kept        BoundaryId, Config, Disorientation, DisorientationAxis, EulerAngles, FaceLabels, Generation, \
-             Quaternion, RandomSeed, SeedId\n",
+            "kept        BoundaryId, Config, CrystalSymmetries, Disorientation, DisorientationAxis, EulerAngles, FaceLabels, \
+             Generation, Quaternion, RandomSeed, SeedId\n",
             "dropped     Volumes: the shape changes\n",
             "dropped     NodeTypes, NumberOfGrains: whole numbers have no means at new points\n",
         ] {
