@@ -86,7 +86,8 @@ fn recipes_do_what_they_say() {
     }
 }
 
-/// Every command of the page on finite elements, and its Python, where Gmsh is there to fill grains.
+/// Every command of the page on finite elements, its jobs and its Python, where Gmsh is there to fill grains. A job begins with its name; what is for programs that cannot be installed is
+/// plain text.
 #[test]
 fn finite_elements_do_what_they_say() {
     if let Err(error) = grainsmooth::check_gmsh() {
@@ -96,16 +97,27 @@ fn finite_elements_do_what_they_say() {
     let blocks = blocks(include_str!("../docs/finite-elements.md"));
     assert!(blocks.len() > 4);
     for (language, text) in blocks {
-        if language == "python" {
+        if language == "inp" {
+            let (name, _) = text.strip_prefix("** ").unwrap().split_once('\n').unwrap();
+            std::fs::write(folder.path().join(name), text).unwrap();
+        } else if language == "python" {
             let mut python = Command::new("python3");
             let Some(output) = run(text, python.args(["-c", text]).current_dir(folder.path())) else {
                 return;
             };
             assert!(output.status.success(), "{text}: {}", String::from_utf8_lossy(&output.stderr));
         } else {
-            assert_eq!(language, "sh");
-            text.lines().for_each(|line| run_command(line, folder.path()));
+            assert!(["sh", "text"].contains(&language), "{language}");
+            let lines = text.lines().filter(|_| language == "sh");
+            lines.for_each(|line| run_command(line, folder.path()));
         }
+    }
+    // The strain sideways is Poisson's ratio times that along x, of one material.
+    if let Ok(printed) = std::fs::read_to_string(folder.path().join("strained.dat")) {
+        let line =
+            printed.lines().find(|line| line.split_whitespace().count() == 4 && line.contains('E')).unwrap();
+        let sideways: f64 = line.split_whitespace().nth(2).unwrap().parse().unwrap();
+        assert!((sideways / -0.0003 - 1.0).abs() < 1e-5, "{line}");
     }
 }
 

@@ -3,7 +3,7 @@
 /// What remeshing is tuned by.
 ///
 /// Each number but those of the volumes was chosen on 200 random grains, `--rng-seed` 1 to 5, by the angles of the triangles and the quality of the tetrahedra that Gmsh made
-/// between them; `cargo bench --bench remeshing` measures such networks again.
+/// between them; `benches/finite_elements.py` measures such networks again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RemeshTuning {
     /// Mean length of the edges of the reference, in units of the size asked for, up to which it is fine enough. With 0.8, four times as many tetrahedra
