@@ -105,7 +105,7 @@ const MISTAKES: &[Mistake] = &[
         case.options.set("box", (0..case.dimension).map(|_| 1));
         case.options.set("chord-error", [0.1]);
     }),
-    ("domain without end", "no end", |case| {
+    ("domain without end", "unbounded", |case| {
         plain(&mut case.options);
         let line = if case.dimension == 2 { "1, 0, 1\n" } else { "1, 0, 0, 1\n" };
         case.files.push(("open.csv".to_owned(), line.into()));
