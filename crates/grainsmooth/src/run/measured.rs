@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use glam::BVec3;
 use polycrystal::{
-    Expected, GrainId, Junctions, NetworkError, Relaxation, SmoothedVoxels, Surface, VoxelLabel,
-    VoxelOptions, Voxels, certify, herring_residual, relax, smooth_voxels,
+    GrainId, Junctions, NetworkError, Relaxation, SmoothedVoxels, VoxelLabel, VoxelOptions, Voxels,
+    herring_residual, relax, smooth_voxels, validate,
 };
 
 use super::given::grains_called;
@@ -110,16 +110,8 @@ impl Polycrystal {
         self.add_time(Stage::Relaxation, start.elapsed());
         progress(Stage::Validation, 0, 1);
         let start = Instant::now();
-        let sides = self.network.sides();
-        let surface = Surface::of_level(self.network.finest(), &self.points, &sides);
-        let volumes: Vec<(GrainId, f64)> =
-            (0u32..).map(GrainId).zip(self.network.cell_volumes().iter().copied()).collect();
-        let expected = Expected { grain_volumes: Some(&volumes), ..Expected::default() };
-        let certificate = certify(&surface, &expected);
-        if !certificate.is_good() {
-            return Err(failed(NetworkError::Invalid(certificate.faults)));
-        }
-        self.validation = certificate;
+        let certificate = validate(&self.network, &self.points);
+        self.validation = certificate.map_err(|faults| failed(NetworkError::Invalid(faults)))?;
         self.residual = herring_residual(&self.network, &self.points);
         self.attempts.extend(relaxed.given_up);
         if let Origin::Measured(measurement) = &mut self.origin {
