@@ -18,7 +18,7 @@ def read(path: str | os.PathLike[str]) -> Polycrystal:
     Parameters
     ----------
     path : str or path
-        A file .vtp, .vtu or .vtk whose triangles (in the plane: lines) have two labels each, of this or another program.
+        A file .vtp, .vtu or .vtk whose triangles (in the plane: lines) have two labels each, of this or another program; or the cells of a .tess (Neper).
 
     Returns
     -------

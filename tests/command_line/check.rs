@@ -346,7 +346,7 @@ fn files_that_are_no_networks_are_refused() {
     workplace.refuses(
         "check seeds.csv",
         FAILED,
-        "seeds.csv: unknown extension; give a network as *.vtp, *.vtu or *.vtk",
+        "seeds.csv: unknown extension; give a network as *.vtp, *.vtu, *.vtk or *.tess",
     );
     workplace.put("plain.vtk", Cubes::new().file("Other"));
     workplace.refuses(

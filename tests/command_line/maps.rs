@@ -412,3 +412,29 @@ fn maps_that_cannot_be_used() {
         workplace.refuses(&format!("smooth {arguments}"), USAGE, message);
     }
 }
+
+#[test]
+fn cells_of_a_tessellation_relax() {
+    let workplace = Workplace::new();
+    for how in ["--seeds 12", "--seeds 12 --dim 2", "--seeds 12 --periodic x,y,z --box 2 1 1"] {
+        workplace.run(&format!("{how} --relax 0 -o cells.tess --stats before.json"));
+        let said = workplace.run("smooth cells.tess --relax equilibrium -o relaxed.vtp --stats after.json");
+        assert!(said.contains("validation  good: every grain closed, nothing crossed or folded"), "{said}");
+        workplace.command("check relaxed.vtp").assert().success();
+        let [before, after] = ["before.json", "after.json"].map(|name| {
+            let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+            let grains = statistics["grains"].as_array().unwrap().clone();
+            let volume = |grain: &serde_json::Value| {
+                let name = if how.contains("--dim 2") { "area" } else { "volume" };
+                (grain["SeedId"].as_u64().unwrap(), grain[name].as_f64().unwrap())
+            };
+            grains.iter().map(volume).collect::<Vec<_>>()
+        });
+        for ((seed, volume), (same, kept)) in before.iter().zip(&after) {
+            assert!(seed == same && (kept / volume - 1.0).abs() < 1e-9, "{how}, {seed}: {kept}, {volume}");
+        }
+    }
+    workplace.put("cut.tess", &workplace.bytes("cells.tess")[..500]);
+    workplace.command("smooth cut.tess --relax 0.1 -o cut.vtp").assert().failure();
+    assert!(!workplace.path("cut.vtp").exists());
+}

@@ -28,6 +28,8 @@ fn every_network_is_remeshed_with_its_volumes() {
         ("cut.vtp", "--seeds 12 -n 1 --periodic x,y,z --periodic-cut box"),
         ("ball.vtp", "--seeds 6 -n 1 --domain sphere --chord-error 0.05"),
         ("map.vtp", "smooth map.vti --exterior-label 0"),
+        ("cells.tess", "--seeds 12 --relax 0 --texture random --phase a:0.4 --phase b:0.6"),
+        ("torus.tess", "--seeds 12 --relax 0 --periodic x,y,z --box 2 1 1"),
     ] {
         workplace.run(&format!("{how} -o {name} --stats before.json"));
         let said =

@@ -2,7 +2,8 @@ use std::f64::consts::PI;
 use std::fs;
 
 use glam::DVec3;
-use grainsmooth::{Config, SeedSource, Shape, Tess, make_polycrystal, read_tess};
+use grainsmooth::polycrystal::certify;
+use grainsmooth::{Config, LabelledFile, SeedSource, Shape, Tess, make_polycrystal, read_tess};
 use proptest::prelude::*;
 use voronoi::{CellId, Dimension, Wall};
 
@@ -57,6 +58,38 @@ fn periodic_cells_come_back_with_their_copies() {
         assert_eq!(face.vertices.len(), of_copy.vertices.len());
     }
     assert!(!periodicity.faces.is_empty() && !periodicity.edges.is_empty());
+}
+
+#[test]
+fn cells_are_networks_with_their_volumes() {
+    for polycrystal in [&*PLANE, &*SPACE, &*TORUS] {
+        let (_folder, path) = write(polycrystal, "cells.tess");
+        let volumes = read_tess(&fs::read_to_string(&path).unwrap()).unwrap().cell_volumes();
+        let file = LabelledFile::read(&path).unwrap();
+        let certificate = certify(&file.surface(), &file.expected());
+        assert!(certificate.is_good(), "{}", certificate.faults);
+        assert_eq!(certificate.grain_volumes.len(), GRAINS);
+        for ((grain, volume), of_cell) in certificate.grain_volumes.iter().zip(volumes) {
+            assert!((volume / of_cell - 1.0).abs() < 1e-11, "{grain:?}: {volume}, {of_cell}");
+        }
+    }
+}
+
+/// Neper may list the edges of a face from another corner on than its corners, or the other way round.
+#[test]
+fn edges_of_a_face_are_found_by_their_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cell.tess");
+    for edges in ["4 9 -8 -12 4", "4 -12 4 9 -8", "4 12 8 -9 -4"] {
+        fs::write(&path, ONE_CELL.replacen("4 9 -8 -12 4", edges, 1)).unwrap();
+        let file = LabelledFile::read(&path).unwrap();
+        let certificate = certify(&file.surface(), &file.expected());
+        assert!(certificate.is_good(), "{edges}: {}", certificate.faults);
+        assert!((certificate.grain_volumes[0].1 - 1.0).abs() < 1e-12);
+    }
+    fs::write(&path, ONE_CELL.replacen("4 9 -8 -12 4", "4 9 -8 -12 5", 1)).unwrap();
+    let error = LabelledFile::read(&path).unwrap_err().to_string();
+    assert!(error.contains("no edge of face 1 joins its vertices 4 and 1"), "{error}");
 }
 
 /// Polyhedra are closed by their faces, planes hold the corners, and signed volumes are those of the cells.

@@ -5,5 +5,6 @@ pub(crate) mod labelled_file;
 pub(crate) mod seed_file;
 pub(crate) mod size_file;
 pub(crate) mod tess;
+mod tess_network;
 pub(crate) mod texture_file;
 pub(crate) mod volume_file;

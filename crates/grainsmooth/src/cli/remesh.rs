@@ -16,7 +16,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct RemeshArguments {
-    /// Network to remesh: .vtp, .vtu or .vtk with two labels for each triangle, whichever program wrote it
+    /// Network to remesh: .vtp, .vtu or .vtk with two labels for each triangle, whichever program wrote it; or .tess (Neper)
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
 

@@ -17,7 +17,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf; or, with --relax, a network: .vtp, .vtu or .vtk with two labels for each triangle
+    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf; or, with --relax, a network: .vtp, .vtu or .vtk with two labels for each triangle, or .tess (Neper)
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 

@@ -32,6 +32,14 @@ pub enum MeshFileProblem {
         /// What is wrong.
         what: String,
     },
+    /// A tessellation in Neper's format is not as it must be.
+    #[error("line {line}: {what}")]
+    Tess {
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        what: String,
+    },
     /// A coordinate's powers leave the range of numbers.
     #[error("point {point} has the coordinate {coordinate:e}; scale the mesh so that none exceeds 1e30")]
     TooFar {
@@ -102,7 +110,7 @@ pub enum MeshFileProblem {
         corners: usize,
     },
     /// The extension names no format that can hold a network.
-    #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
+    #[error("unknown extension; give a network as *.vtp, *.vtu, *.vtk or *.tess")]
     NotANetworkFormat,
     /// An edit that control points have no use for.
     #[error("Bezier curves and patches have only control points; move these")]

@@ -176,7 +176,7 @@ impl GrainPhases {
 impl fmt::Display for PhaseShare {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, grains, crystal_symmetry, fraction, fraction_asked, scale, place, .. } = self;
-        write!(out, "{name} {:.6} % of the volume", 100.0 * fraction)?;
+        write!(out, "{name} {:.6} % of the material", 100.0 * fraction)?;
         if let Some(asked) = fraction_asked {
             write!(out, " (asked {:.6} %)", 100.0 * asked)?;
         }

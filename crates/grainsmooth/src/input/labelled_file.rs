@@ -10,6 +10,7 @@ use texture::{CrystalSymmetry, Orientation};
 use toml::{Table, Value};
 use voronoi::Dimension;
 
+use super::tess_network;
 use crate::mesh::file::vtk::labelled::{LabelledCells, Notes, read_legacy, read_xml};
 use crate::mesh::file::{MeshFileProblem, check_lengths};
 use crate::{Config, Error, Names};
@@ -67,9 +68,11 @@ pub enum FileElements {
 }
 
 impl LabelledFile {
-    /// Reads a network from a .vtp, .vtu or .vtk file.
+    /// Reads a network from a .vtp, .vtu, .vtk or .tess file.
     ///
-    /// The sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
+    /// Cells of a .tess file (Neper) are taken as they are, convex or not, and numbered from 0.
+    ///
+    /// In the other files, the sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
     /// 0), else of `boundary_labels` or `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
     /// at the exterior, that close most grains are taken for the file's.
     ///
@@ -276,6 +279,7 @@ fn reader(path: &Path) -> Option<Reader> {
     match path.extension()?.to_ascii_lowercase().to_str()? {
         "vtk" => Some(read_legacy),
         "vtp" | "vtu" => Some(read_xml),
+        "tess" => Some(tess_network::read),
         _ => None,
     }
 }
