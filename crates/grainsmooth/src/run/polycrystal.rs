@@ -215,7 +215,7 @@ impl Polycrystal {
         self.points.iter().map(|point| point / stretch).collect()
     }
 
-    /// The grains as [`Config::aspect_ratio`] stretches them. What was found of angles, triangles and tensions stays that of the
+    /// The grains as [`Config::aspect_ratio`](crate::Config::aspect_ratio) stretches them. What was found of angles, triangles and tensions stays that of the
     /// frame in which they were at rest.
     #[must_use]
     pub fn stretched_if_asked(mut self) -> Self {
