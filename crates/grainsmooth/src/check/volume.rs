@@ -78,6 +78,12 @@ impl VolumeFile {
         self.points[node as usize]
     }
 
+    /// The corners of the box around all tetrahedra: without the nodes that only control others.
+    fn bounds(&self) -> [DVec3; 2] {
+        let points = || self.tetrahedra.iter().flatten().map(|corner| self.place(*corner));
+        [points().fold(DVec3::INFINITY, DVec3::min), points().fold(DVec3::NEG_INFINITY, DVec3::max)]
+    }
+
     fn corners(&self, element: usize) -> [DVec3; 4] {
         self.tetrahedra[element].map(|corner| self.place(corner))
     }

@@ -117,6 +117,15 @@ pub struct TessCopy {
 }
 
 impl Tess {
+    /// The faces (in the plane: edges) of all cells, each with its cell: not reversed where the cell is on the first side.
+    pub(crate) fn sides_of_cells(&self) -> impl Iterator<Item = (u32, Oriented)> {
+        let of_cells: Vec<&[Oriented]> = match self.dimension {
+            Dimension::Two => self.faces.iter().map(|face| &face.edges[..]).collect(),
+            Dimension::Three => self.polyhedra.iter().map(|faces| &faces[..]).collect(),
+        };
+        (0..).zip(of_cells).flat_map(|(cell, sides)| sides.iter().map(move |side| (cell, *side)))
+    }
+
     /// The volume of each cell (in the plane: area) as its faces bound it.
     pub fn cell_volumes(&self) -> Vec<f64> {
         let corner = |face: &TessFace, index: usize| self.vertices[face.vertices[index] as usize];

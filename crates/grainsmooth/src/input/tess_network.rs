@@ -99,21 +99,8 @@ fn labels_of_sides(tess: &Tess) -> Vec<[i64; 2]> {
     let mut sides = vec![[-1; 2]; count];
     let repeated = copies.into_iter().flatten().flat_map(|copy| [copy.secondary, copy.primary.index]);
     repeated.for_each(|boundary| sides[boundary as usize] = [-2 - i64::from(boundary); 2]);
-    match tess.dimension {
-        Dimension::Two => {
-            for (cell, face) in (0..).zip(&tess.faces) {
-                face.edges
-                    .iter()
-                    .for_each(|edge| sides[edge.index as usize][usize::from(edge.is_reversed)] = cell);
-            }
-        }
-        Dimension::Three => {
-            for (cell, faces) in (0..).zip(&tess.polyhedra) {
-                faces
-                    .iter()
-                    .for_each(|face| sides[face.index as usize][usize::from(face.is_reversed)] = cell);
-            }
-        }
+    for (cell, side) in tess.sides_of_cells() {
+        sides[side.index as usize][usize::from(side.is_reversed)] = cell.into();
     }
     sides
 }

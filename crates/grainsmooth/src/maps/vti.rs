@@ -68,7 +68,7 @@ fn candidates<'a>(file: &'a XmlFile<'a>) -> Vec<Candidate<'a>> {
     let of_element = |(element, is_of_points): (&str, bool)| {
         let candidate = move |array: &'a Element<'a>| {
             let is_scalar = array.attribute("NumberOfComponents").is_none_or(|count| count == "1");
-            let kind = scalar_type(&array.attribute("type")?)?;
+            let kind = array.scalar_type()?;
             let name = array.attribute("Name")?;
             is_scalar.then_some(Candidate { name, array, kind, is_of_points })
         };
@@ -109,22 +109,6 @@ fn labels_among<'a>(
         (Some(candidate), true) => Ok(candidate),
         (Some(_), false) => Err(MapProblem::SeveralArrays { known }),
     }
-}
-
-fn scalar_type(name: &str) -> Option<ScalarType> {
-    Some(match name {
-        "Int8" => ScalarType::Int8,
-        "UInt8" => ScalarType::UInt8,
-        "Int16" => ScalarType::Int16,
-        "UInt16" => ScalarType::UInt16,
-        "Int32" => ScalarType::Int32,
-        "UInt32" => ScalarType::UInt32,
-        "Int64" => ScalarType::Int64,
-        "UInt64" => ScalarType::UInt64,
-        "Float32" => ScalarType::Float32,
-        "Float64" => ScalarType::Float64,
-        _ => return None,
-    })
 }
 
 /// The numbers of an attribute.

@@ -55,6 +55,23 @@ impl<'a> Element<'a> {
         self.tag.name().as_ref() == name.as_bytes()
     }
 
+    /// The type of an array's numbers; nothing where VTK's readers know none of that name.
+    pub(crate) fn scalar_type(&self) -> Option<ScalarType> {
+        Some(match self.attribute("type")?.as_str() {
+            "Int8" => ScalarType::Int8,
+            "UInt8" => ScalarType::UInt8,
+            "Int16" => ScalarType::Int16,
+            "UInt16" => ScalarType::UInt16,
+            "Int32" => ScalarType::Int32,
+            "UInt32" => ScalarType::UInt32,
+            "Int64" => ScalarType::Int64,
+            "UInt64" => ScalarType::UInt64,
+            "Float32" => ScalarType::Float32,
+            "Float64" => ScalarType::Float64,
+            _ => return None,
+        })
+    }
+
     /// The value of an attribute.
     pub(crate) fn attribute(&self, name: &str) -> Option<String> {
         let mut attributes = self.tag.attributes();

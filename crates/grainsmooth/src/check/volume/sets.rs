@@ -22,9 +22,7 @@ struct Sides(Vec<(String, usize, f64)>);
 
 impl Sides {
     fn new(file: &VolumeFile) -> Self {
-        let points = || file.tetrahedra.iter().flatten().map(|corner| file.place(*corner));
-        let ends =
-            [points().fold(DVec3::INFINITY, DVec3::min), points().fold(DVec3::NEG_INFINITY, DVec3::max)];
+        let ends = file.bounds();
         let side =
             |axis: usize, end: usize| (format!("{}{end}", AXES[axis].to_uppercase()), axis, ends[end][axis]);
         Self((0..3).flat_map(|axis| [side(axis, 0), side(axis, 1)]).collect())

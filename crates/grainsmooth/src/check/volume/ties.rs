@@ -77,8 +77,7 @@ fn check_faces(file: &VolumeFile, faces: &Faces, periods: DVec3, moved: &[Moved]
         let seen = key.map(|(node, at)| (node, [0, 1, 2].map(|axis| at[axis] - from[axis])));
         counts.entry(seen).or_default().push(corners);
     }
-    let points = || file.tetrahedra.iter().flatten().map(|corner| file.place(*corner));
-    let ends = [points().fold(DVec3::INFINITY, DVec3::min), points().fold(DVec3::NEG_INFINITY, DVec3::max)];
+    let ends = file.bounds();
     let is_at_wall = |corners: &[u32; 3]| {
         (0..3).filter(|axis| periods[*axis] == 0.0).any(|axis| {
             ends.iter().any(|end| corners.iter().all(|corner| file.place(*corner)[axis] == end[axis]))

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use polycrystal::GrainId;
-use vtkio::xml::ScalarType;
 use vtkio::{IOBuffer, model::CellType};
 
 use super::{Tie, VolumeFile};
@@ -89,18 +88,7 @@ fn named<'a, 'b>(file: &'b XmlFile<'a>, parent: &str, name: &str) -> Option<&'b 
 }
 
 fn values(file: &XmlFile<'_>, array: &Element<'_>) -> Option<IOBuffer> {
-    let kind = match array.attribute("type")?.as_str() {
-        "Int8" => ScalarType::Int8,
-        "UInt8" => ScalarType::UInt8,
-        "Int32" => ScalarType::Int32,
-        "UInt32" => ScalarType::UInt32,
-        "Int64" => ScalarType::Int64,
-        "UInt64" => ScalarType::UInt64,
-        "Float32" => ScalarType::Float32,
-        "Float64" => ScalarType::Float64,
-        _ => return None,
-    };
-    file.values(array, kind)
+    file.values(array, array.scalar_type()?)
 }
 
 fn whole_numbers(file: &XmlFile<'_>, array: &Element<'_>) -> Option<Vec<i64>> {

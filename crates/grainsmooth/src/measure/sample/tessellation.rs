@@ -32,20 +32,8 @@ fn of_tess(tess: &Tess) -> Result<MeasuredSample, crate::mesh::file::MeshFilePro
     };
     // Each boundary has at first nothing on either side. One that a single cell has is the exterior's too.
     let mut sides = vec![[Side::Exterior; 2]; boundary_count];
-    let mut put = |cell: u32, index: u32, is_reversed: bool| {
-        sides[index as usize][usize::from(is_reversed)] = Side::Grain(GrainId(cell));
-    };
-    match tess.dimension {
-        Dimension::Two => {
-            for (cell, face) in ids(tess.faces.len()).zip(&tess.faces) {
-                face.edges.iter().for_each(|edge| put(cell, edge.index, edge.is_reversed));
-            }
-        }
-        Dimension::Three => {
-            for (cell, faces) in ids(tess.polyhedra.len()).zip(&tess.polyhedra) {
-                faces.iter().for_each(|face| put(cell, face.index, face.is_reversed));
-            }
-        }
+    for (cell, side) in tess.sides_of_cells() {
+        sides[side.index as usize][usize::from(side.is_reversed)] = Side::Grain(GrainId(cell));
     }
     let walls: BTreeSet<u32> = tess.domain.walls.iter().flatten().copied().collect();
     let is_periodic = tess.periodicity.is_some();
