@@ -81,7 +81,7 @@ impl CellComplex {
 
     /// All edges, sorted.
     pub fn edges(&self) -> Vec<ComplexEdge> {
-        let mut edges: Vec<ComplexEdge> = self.faces.iter().flat_map(Face::edges).collect();
+        let mut edges: Vec<ComplexEdge> = self.faces.par_iter().flat_map_iter(Face::edges).collect();
         edges.par_sort_unstable();
         edges.dedup();
         edges

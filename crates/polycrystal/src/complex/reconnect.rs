@@ -60,6 +60,11 @@ impl CellComplex {
     /// Gives the new face, or nothing where that is not possible: see [`Self::reconnectable_edge`].
     pub fn edge_to_triangle(&mut self, edge: ComplexEdge, positions: [DVec3; 3]) -> Option<FaceId> {
         let star = self.reconnectable_edge(edge)?;
+        Some(self.put_triangle(edge, &star, positions))
+    }
+
+    /// As [`Self::edge_to_triangle`], given what [`Self::reconnectable_edge`] found.
+    pub(crate) fn put_triangle(&mut self, edge: ComplexEdge, star: &Star, positions: [DVec3; 3]) -> FaceId {
         let ends = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
         let corners = positions.map(|position| self.add_vertex(position));
         let mut loops = [Vec::new(), Vec::new()];
@@ -88,7 +93,7 @@ impl CellComplex {
         let corners = if runs_up { corners } else { [corners[0], corners[2], corners[1]] };
         let face = self.face_between([star.ends[first], star.ends[1 - first]], corners.to_vec());
         self.add_face(face);
-        Some(FaceId(id(self.faces.len() - 1)))
+        FaceId(id(self.faces.len() - 1))
     }
 
     /// Puts an edge in the place of a face with three corners; it starts at `positions[0]`, at the face's first side.
@@ -96,6 +101,16 @@ impl CellComplex {
     /// Gives the new edge, or nothing where that is not possible: see [`Self::reconnectable_triangle`].
     pub fn triangle_to_edge(&mut self, face: FaceId, positions: [DVec3; 2]) -> Option<ComplexEdge> {
         let (star, corners) = self.reconnectable_triangle(face)?;
+        Some(self.put_edge(face, (&star, corners), positions))
+    }
+
+    /// As [`Self::triangle_to_edge`], given what [`Self::reconnectable_triangle`] found.
+    pub(crate) fn put_edge(
+        &mut self,
+        face: FaceId,
+        (star, corners): (&Star, [PeriodicVertex; 3]),
+        positions: [DVec3; 2],
+    ) -> ComplexEdge {
         let ends = positions.map(|position| self.add_vertex(position));
         for (k, at) in star.between.iter().enumerate() {
             let Some(at) = at else { continue };
@@ -111,7 +126,7 @@ impl CellComplex {
             }
         }
         self.remove_face(face.0);
-        Some(ComplexEdge { start: ends[0].vertex, end: ends[1] })
+        ComplexEdge { start: ends[0].vertex, end: ends[1] }
     }
 
     /// The corner of a face before another one.

@@ -143,8 +143,13 @@ impl CellComplex {
     }
 
     fn vertex_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
-        let mut star = VertexStar { sides: Vec::new(), faces: Vec::new(), edges: Vec::new() };
-        for &face in &self.faces_at[place.vertex as usize] {
+        let faces = &self.faces_at[place.vertex as usize];
+        let mut star = VertexStar {
+            sides: Vec::with_capacity(2 * faces.len()),
+            faces: Vec::with_capacity(faces.len()),
+            edges: Vec::with_capacity(faces.len()),
+        };
+        for &face in faces {
             let corners = &self.faces[face as usize].corners;
             let mut uses = (0..corners.len()).filter(|k| corners[*k].vertex == place.vertex);
             let k = uses.next()?;
@@ -159,7 +164,7 @@ impl CellComplex {
                 let other = corners[k % corners.len()];
                 let other = PeriodicVertex { translation: other.translation + at.offset, ..other };
                 let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
-                    star.edges.push((other, Vec::new()));
+                    star.edges.push((other, Vec::with_capacity(faces.len())));
                     star.edges.len() - 1
                 });
                 star.edges[known].1.extend(sides);

@@ -72,7 +72,7 @@ pub(crate) struct FanTerms {
 
 impl Fans {
     /// The fans of a complex whose boundaries have these tensions.
-    pub(crate) fn new(complex: &CellComplex, tension: &dyn Fn(&Boundary) -> f64) -> Self {
+    pub(crate) fn new(complex: &CellComplex, tension: &(dyn Fn(&Boundary) -> f64 + Sync)) -> Self {
         let domain = complex.domain().clone();
         let faces = complex.faces();
         let lines = complex.edges();
@@ -112,7 +112,7 @@ impl Fans {
             let boundary = boundary(*sides);
             tension(&boundary) + of_wall(&boundary)
         };
-        let tensions = sides.iter().map(of_sides).collect();
+        let tensions = sides.par_iter().map(of_sides).collect();
         Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
     }
 

@@ -54,7 +54,7 @@ impl Shape {
     /// That of fans some of whose lines have got other ends: they are known by the boundaries that meet there.
     pub(crate) fn with_new_ends(mut self, before: &Fans, fans: &Fans) -> Self {
         let is_gone = |(_, line): &(usize, &ComplexEdge)| fans.lines.binary_search(line).is_err();
-        let gone = before.lines.iter().enumerate().filter(is_gone);
+        let gone = before.lines.par_iter().enumerate().filter(is_gone);
         let gone: HashMap<Vec<FaceId>, DVec3> =
             gone.map(|(number, _)| (before.faces_of_line(number), self.lines[number].1)).collect();
         let of_line = |(number, line): (usize, &ComplexEdge)| {
@@ -65,7 +65,7 @@ impl Shape {
             };
             (*line, bulge)
         };
-        self.lines = fans.lines.iter().enumerate().map(of_line).collect();
+        self.lines = fans.lines.par_iter().enumerate().map(of_line).collect();
         self
     }
 

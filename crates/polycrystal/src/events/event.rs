@@ -68,20 +68,22 @@ fn edge_to_triangle(complex: &mut CellComplex, edge: ComplexEdge, least: f64) ->
         let sides = [first, second, star.around[(k + 1) % 3], star.around[(k + 2) % 3]];
         on_walls(complex, &sides, middle + along.normalize_or_zero() * length)
     });
-    complex.edge_to_triangle(edge, positions).is_some()
+    complex.put_triangle(edge, &star, positions);
+    true
 }
 
 fn triangle_to_edge(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
     let Some((star, corners)) = complex.reconnectable_triangle(face) else { return false };
-    let corners = corners.map(|corner| complex.position(corner));
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let length = OPENING * corners[0].distance(middle).max(least);
+    let places = corners.map(|corner| complex.position(corner));
+    let middle = (places[0] + places[1] + places[2]) / 3.0;
+    let length = OPENING * places[0].distance(middle).max(least);
     let [a, b, c] = star.around;
     let positions = [0, 1].map(|end: usize| {
         let along: DVec3 = star.outer[end].iter().map(|outer| direction(complex, middle, *outer)).sum();
         on_walls(complex, &[a, b, c, star.ends[end]], middle + along.normalize_or_zero() * length)
     });
-    complex.triangle_to_edge(face, positions).is_some()
+    complex.put_edge(face, (&star, corners), positions);
+    true
 }
 
 fn direction(complex: &CellComplex, from: DVec3, to: PeriodicVertex) -> DVec3 {

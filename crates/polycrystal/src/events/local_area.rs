@@ -13,7 +13,7 @@ use voronoi::{CellId, FaceId};
 use crate::energy::shape::Shape;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::{Boundary, CellComplex, Freedom};
-use fan::{Fan, VolumeGradient};
+use fan::Fan;
 
 /// How much the pressure of a cell of volume V rises where it loses v, in units of `v V^(-4/3)`. That of a ball alone rises by 1.1;
 /// less than that would let small cells run away, and far more would hold up what the cells around give way to.
@@ -164,7 +164,8 @@ impl LocalArea {
 
     /// The corners of each face, and its centre after them, one face after the other.
     fn rings(&self) -> Vec<DVec3> {
-        let mut rings = Vec::new();
+        let count = self.faces.iter().map(|face| face.corners.len() + 1).sum();
+        let mut rings = Vec::with_capacity(count);
         self.place_rings(&self.points, &mut rings);
         rings
     }
@@ -195,11 +196,21 @@ impl LocalArea {
 
     /// The volumes between the faces of each cell and the origin.
     fn volumes(&self, rings: &[DVec3]) -> Vec<f64> {
+        self.volumes_and_normals(rings, |_| ())
+    }
+
+    /// The same, and shows the normals of all triangles, twice as long as their areas, one face after the other.
+    fn volumes_and_normals(&self, rings: &[DVec3], mut show: impl FnMut(DVec3)) -> Vec<f64> {
         let mut volumes = vec![0.0; self.cells.len()];
         for (face, fan) in self.fans(rings) {
-            let VolumeGradient { volume, normal } = fan.volume_gradient();
+            let mut sum = DVec3::ZERO;
+            for normal in fan.normals() {
+                sum += normal;
+                show(normal);
+            }
             for Beside { cell, offset, sign } in &face.beside {
-                volumes[*cell] += sign * (volume - offset.dot(normal)) / 6.0;
+                // All triangles end at the centre; from an origin that is off the cone has as much less as the offset goes along the normal.
+                volumes[*cell] += sign * (fan.center - *offset).dot(sum) / 6.0;
             }
         }
         volumes
@@ -219,8 +230,9 @@ impl LocalArea {
         })
     }
 
-    /// Whether no cell's volume is off by more than a share of it, or at least by no more than it was in another area of the same cells.
-    pub(crate) fn keeps_volumes(&self, share: f64, before: &[(CellId, f64, f64)]) -> bool {
+    /// Whether no cell's volume is off by more than a share of it, or at least by no more than it is in another area of the same cells.
+    pub(crate) fn keeps_volumes(&self, share: f64, before: &Self) -> bool {
+        let before: Vec<_> = before.excesses().collect();
         self.excesses().all(|(cell, _, off)| {
             let was = before.iter().find(|(id, ..)| *id == cell).map_or(0.0, |(_, _, was)| was.abs());
             off.abs() <= was.max(share)
@@ -246,8 +258,7 @@ impl LocalArea {
         let rings = self.rings();
         let of_face = |Fan { ring, center }: Fan<'_>| {
             let count = ring.len();
-            let normals: Vec<DVec3> =
-                (0..count).map(|k| (ring[k] - center).cross(ring[(k + 1) % count] - center)).collect();
+            let normals: Vec<DVec3> = Fan { ring, center }.normals().collect();
             let whole: DVec3 = normals.iter().sum();
             let is_folded = |k: &usize| {
                 let [a, b, c] = [*k, k + 1, k + 2].map(|k| ring[k % count]);

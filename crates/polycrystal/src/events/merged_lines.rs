@@ -3,13 +3,13 @@
 //! Where a line has shrunk and no change of topology lessens the area, the one that is due shows on finer meshes than decide about it
 //! only. Left as it is, such a line keeps all triangles around thin, and their angles off balance; as a point it does neither.
 
-use std::collections::HashMap;
-
 use cancellation::check_cancelled;
 use glam::DVec3;
-use voronoi::{Side, Tessellation, VertexId};
+use rayon::prelude::*;
+use voronoi::{FaceId, Side, Tessellation, VertexId};
 
 use crate::energy::shape::{Shape, distinct, line_of};
+use crate::mesh::grouped::Grouped;
 use crate::{CellComplex, Collapsed, remove_short_edges};
 
 /// The cells of a complex without short lines.
@@ -24,38 +24,44 @@ impl MergedLines {
     /// Draws lines shorter than `length` together, as [`remove_short_edges`] has it; the others keep their bulges.
     pub(crate) fn new(complex: &CellComplex, shape: &Shape, length: f64) -> Self {
         let (all, corners) = complex.tessellation();
-        let bulges = all.edges().ends.into_iter().map(|ends| shape.bulge_of_line(line_of(&corners, ends)));
-        let lines = lines_of(&all).into_iter().zip(bulges);
-        let mut known: HashMap<Vec<Side>, Vec<(DVec3, DVec3)>> = HashMap::new();
-        for ((sides, middle), bulge) in lines {
-            known.entry(sides).or_default().push((middle, bulge));
-        }
+        let bulge = |line: &Line| shape.bulge_of_line(line_of(&corners, line.ends));
+        let mut known: Vec<(DVec3, Line)> = lines_of(&all).map(|line| (bulge(&line), line)).collect();
+        known.par_sort_by(|(_, a), (_, b)| a.sides.cmp(&b.sides));
         let (cells, collapsed) = remove_short_edges(&all, length);
-        let curved = |(sides, middle): (Vec<Side>, DVec3)| {
-            let before = known.get(&sides).into_iter().flatten();
-            let distance = |line: &(DVec3, DVec3)| line.0.distance_squared(middle);
-            let nearest = before.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            middle + nearest.map_or(DVec3::ZERO, |(_, bulge)| *bulge)
+        let curved = |Line { sides, middle, .. }: Line| {
+            let first = known.partition_point(|(_, line)| line.sides < sides);
+            let before = known[first..].iter().take_while(|(_, line)| line.sides == sides);
+            let distance = |line: &Line| line.middle.distance_squared(middle);
+            let nearest = before.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
+            middle + nearest.map_or(DVec3::ZERO, |(bulge, _)| *bulge)
         };
-        let middles = lines_of(&cells).into_iter().map(curved).collect();
+        let middles = lines_of(&cells).map(curved).collect();
         Self { cells, middles, collapsed }
     }
 }
 
-/// Of each line the sides around, an image as the cell that it is of, and where it is halfway between its ends.
-fn lines_of(cells: &Tessellation) -> Vec<(Vec<Side>, DVec3)> {
+/// A line of some cells.
+struct Line {
+    /// Those around, an image as the cell that it is of.
+    sides: Vec<Side>,
+    ends: [VertexId; 2],
+    /// Halfway between its ends.
+    middle: DVec3,
+}
+
+/// The lines of some cells, in order.
+fn lines_of(cells: &Tessellation) -> impl IndexedParallelIterator<Item = Line> {
     let edges = cells.edges();
-    let mut around = vec![Vec::new(); edges.ends.len()];
-    let mut of_corner = edges.of_corner.iter();
-    for face in cells.faces() {
-        check_cancelled();
-        for edge in of_corner.by_ref().take(cells.face_corners(face).len()) {
-            around[*edge as usize].extend(cells.face_sides(face));
-        }
-    }
+    let corners = cells.faces().flat_map(|face| std::iter::repeat_n(face.0, cells.face_corners(face).len()));
+    let corners: Vec<u32> = corners.collect();
+    let at_corners = edges.of_corner.iter().zip(&corners).map(|(edge, face)| (*edge as usize, *face));
+    let faces = Grouped::new(edges.ends.len(), at_corners);
     let position = |vertex: VertexId| cells.vertices()[vertex.index()];
-    let middles = edges.ends.iter().map(|ends| position(ends[0]).midpoint(position(ends[1])));
-    around.into_iter().map(distinct).zip(middles).collect()
+    edges.ends.into_par_iter().enumerate().map(move |(line, ends)| {
+        check_cancelled();
+        let sides = faces.of(line).iter().flat_map(|face| cells.face_sides(FaceId(*face)));
+        Line { sides: distinct(sides), ends, middle: position(ends[0]).midpoint(position(ends[1])) }
+    })
 }
 
 #[cfg(test)]
@@ -87,18 +93,17 @@ mod tests {
             points[fans.point_of_line(line)] += bulge(&sides);
         }
         let shape = Shape::new(&fans, &points);
-        let lines = lines_of(&complex.tessellation().0);
+        let cells = complex.tessellation().0;
+        let lines: Vec<Line> = lines_of(&cells).collect();
         for (length, is_short) in [(0.0, false), (0.1, true)] {
             let merged = MergedLines::new(&complex, &shape, length);
             assert_eq!(merged.collapsed.edges > 0, is_short);
             let mut kept = 0;
-            for ((sides, middle), point) in lines_of(&merged.cells).iter().zip(&merged.middles) {
-                if lines.iter().any(|(known, _)| known == sides) {
-                    assert!(
-                        point.distance(*middle + bulge(sides)) < 1e-14,
-                        "{length} {sides:?} {}",
-                        *point - *middle - bulge(sides)
-                    );
+            let left: Vec<Line> = lines_of(&merged.cells).collect();
+            for (Line { sides, middle, .. }, point) in left.iter().zip(&merged.middles) {
+                if lines.iter().any(|known| known.sides == *sides) {
+                    let off = *point - *middle - bulge(sides);
+                    assert!(off.length() < 1e-14, "{length} {sides:?} {off}");
                     kept += 1;
                 }
             }

@@ -355,22 +355,21 @@ impl Reconnector {
         let least = LEAST_GOING * short;
         let snapshot = complex.snapshot(&old);
         let mut as_it_is = LocalArea::new(complex, &old, conditions, excess);
-        let excesses: Vec<_> = as_it_is.excesses().collect();
-        let (shortest, folds) = (as_it_is.shortest_edge(), as_it_is.fold_count());
         let changed = event.happen(complex, least).and_then(|new| {
             let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
             let (area, shortest) = match demand {
                 Demand::LessArea => (changed.minimize(f64::NEG_INFINITY), LEAST * short),
-                Demand::LongerLines => (changed.minimize(f64::NEG_INFINITY), shortest),
+                Demand::LongerLines => (changed.minimize(f64::NEG_INFINITY), as_it_is.shortest_edge()),
                 Demand::NoFold => (0.0, LEAST * short),
             };
+            let must_be_less = demand == Demand::LessArea;
             // What takes longest comes last: most events fail before.
-            let mut is_less = || area < as_it_is.area_now() && area < as_it_is.minimize(area);
             let keeps_promise = area.is_finite()
+                && (!must_be_less || area < as_it_is.area_now())
                 && changed.shortest_edge() > shortest
-                && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
-                && changed.fold_count() <= folds
-                && (demand != Demand::LessArea || is_less());
+                && changed.keeps_volumes(LARGEST_CHANGE, &as_it_is)
+                && changed.fold_count() <= as_it_is.fold_count()
+                && (!must_be_less || area < as_it_is.minimize(area));
             keeps_promise.then_some(changed)
         });
         complex.restore(snapshot);

@@ -4,8 +4,11 @@
 //! points that move toward the centre of the triangles around come closer to it.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use subzero::VertexRule;
 
+use crate::flow::pressure_response::CHUNK;
+use crate::mesh::id::id;
 use crate::{Mesh, Network};
 
 /// A step of each point inside a boundary, within its tangent plane, by a share of its way to the centre of the triangles around; the others
@@ -27,9 +30,8 @@ pub(crate) fn tangential_moves(network: &Network, level: usize, points: &[DVec3]
             weights[*corner as usize] += 2.0 * weight;
         }
     }
-    for (point, by) in (0u32..).zip(&mut moves) {
-        let place = point as usize;
-        let is_inside = mesh.vertex_rule(point) == VertexRule::Smooth;
+    moves.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(place, by)| {
+        let is_inside = mesh.vertex_rule(id(place)) == VertexRule::Smooth;
         let normal = normals[place].normalize_or_zero();
         let within = *by - normal * normal.dot(*by);
         *by = if is_inside {
@@ -37,6 +39,6 @@ pub(crate) fn tangential_moves(network: &Network, level: usize, points: &[DVec3]
         } else {
             DVec3::ZERO
         };
-    }
+    });
     moves
 }

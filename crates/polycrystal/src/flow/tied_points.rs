@@ -1,8 +1,10 @@
 //! Control points that move as one.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::energy::patches::Patches;
+use crate::flow::pressure_response::CHUNK;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
 use crate::{Freedom, Level, Mesh, NetworkError};
@@ -54,7 +56,11 @@ impl TiedPoints {
 
     /// Gives all points of each group the mean of their displacements, for an attempt that is counted from 0.
     pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
-        self.number().unite(moves, of_point);
+        for group in self.0.of_several() {
+            let sum: DVec3 = group.iter().map(|point| moves[*point as usize]).sum();
+            let mean = freedom(&group, &of_point).project(sum / group.len() as f64);
+            group.iter().for_each(|point| moves[*point as usize] = mean);
+        }
         if attempt >= WHOLE_ATTEMPTS {
             moves.iter_mut().for_each(|by| *by *= 0.5);
         }
@@ -76,7 +82,8 @@ impl TiedPoints {
         self.unite(&mut moves, &freedom, 0);
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
-            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
+            let pairs = points.par_iter().zip(&moves).with_min_len(CHUNK);
+            let moved: Vec<DVec3> = pairs.map(|(point, by)| *point + *by).collect();
             let broken = broken(&moved);
             count = broken.len();
             if count == 0 {
@@ -128,21 +135,15 @@ impl Numbering {
 
     /// How the points of a group can move as one, given how each can.
     pub(crate) fn freedom(&self, group: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
-        self.members(group).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
-    }
-
-    /// Gives all points of each group the mean of their displacements.
-    pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom) {
-        for group in (0..self.group_count()).filter(|group| self.members(*group).len() > 1) {
-            let members = self.members(group);
-            let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
-            let mean = self.freedom(group, &of_point).project(sum / members.len() as f64);
-            members.iter().for_each(|point| moves[*point as usize] = mean);
-        }
+        freedom(self.members(group), of_point)
     }
 
     /// The control points of a group.
     pub(crate) fn members(&self, group: usize) -> &[u32] {
         self.members.of(group)
     }
+}
+
+fn freedom(group: &[u32], of_point: impl Fn(u32) -> Freedom) -> Freedom {
+    group.iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
 }

@@ -58,11 +58,13 @@ impl Fan {
             thinnest = None;
             let mut bound = (GAIN * cosine.acos()).cos();
             let centers = worst.into_iter().filter_map(|point| (point as usize).checked_sub(self.outline));
-            let mut best = None;
-            for fan in centers.flat_map(|center| self.splits(center)) {
-                if let Some(found) = fan.thinnest(bound) {
+            // Most splits are worse: they are made where the last one was.
+            let (mut best, mut split) = (None, self.clone());
+            for (center, ends) in centers.flat_map(|center| self.splits(center)) {
+                self.split(center, ends, &mut split);
+                if let Some(found) = split.thinnest(bound) {
                     (thinnest, bound) = (Some(found), found.1);
-                    best = Some(fan);
+                    std::mem::swap(best.get_or_insert_with(|| self.clone()), &mut split);
                 }
             }
             self = best.unwrap_or(self);
@@ -110,23 +112,24 @@ impl Fan {
         thinnest
     }
 
-    /// The fans in which a new centre takes a part of a centre's ring over.
-    fn splits(&self, center: usize) -> impl Iterator<Item = Self> {
+    /// Where a new centre may take a part of a centre's ring over.
+    fn splits(&self, center: usize) -> impl Iterator<Item = (usize, [usize; 2])> + use<> {
         let count = self.rings[center].len();
         let pairs = (0..count).flat_map(move |first| {
             let last = (count - 1).min((first + count).saturating_sub(FEWEST_SEGMENTS));
             (first + FEWEST_SEGMENTS..=last).map(move |second| [first, second])
         });
-        pairs.map(move |ends| self.split(center, ends))
+        pairs.map(move |ends| (center, ends))
     }
 
-    /// A centre keeps its ring from the first of two places to the second, and a new one has the rest.
-    fn split(&self, center: usize, [first, second]: [usize; 2]) -> Self {
-        let mut fan = self.clone();
+    /// Makes of a fan this one where a centre keeps its ring from the first of two places to the second, and a new one has the rest.
+    fn split(&self, center: usize, [first, second]: [usize; 2], fan: &mut Self) {
+        fan.points.clone_from(&self.points);
+        fan.rings.clone_from(&self.rings);
         let [old, new] = [center, self.rings.len()].map(|center| id(self.outline + center));
         let ring = &self.rings[center];
         let kept = &ring[first..=second];
-        let given = [&ring[second..], &ring[..=first]].concat();
+        let mut given = [&ring[second..], &ring[..=first]].concat();
         fan.points
             .push(given.iter().map(|point| self.points[*point as usize]).sum::<DVec3>() / given.len() as f64);
         // Centres of the ring see the new one instead, or, at the ends of its part, beside the old one.
@@ -142,10 +145,13 @@ impl Fan {
                 ring[at] = new;
             }
         }
-        fan.rings[center] = [kept, &[new]].concat();
-        fan.rings.push([&given[..], &[old]].concat());
+        let of_old = &mut fan.rings[center];
+        of_old.clear();
+        of_old.extend_from_slice(kept);
+        of_old.push(new);
+        given.push(old);
+        fan.rings.push(given);
         fan.smooth();
-        fan
     }
 
     fn smooth(&mut self) {

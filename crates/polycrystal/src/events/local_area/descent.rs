@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::fan::Fan;
 use super::{Beside, LocalArea, Place, SMALL};
-use crate::energy::triangle::Triangle;
 
 /// Most steps of descent.
 const STEPS: usize = 20;
@@ -143,44 +142,48 @@ impl LocalArea {
 
     /// The area weighted by tension together with what cells resist, and how it changes with the points.
     pub(super) fn area(&self, rings: &[DVec3]) -> (f64, Vec<DVec3>) {
+        let mut normals = Vec::with_capacity(rings.len());
+        let volumes = self.volumes_and_normals(rings, |normal| normals.push(normal));
         let mut area = 0.0;
         let mut pulls = Vec::with_capacity(self.cells.len());
-        for (cell, volume) in self.cells.iter().zip(self.volumes(rings)) {
+        for (cell, volume) in self.cells.iter().zip(volumes) {
             let excess = volume - cell.volume;
             area += (0.5 * cell.stiffness * excess - cell.pressure) * excess;
             pulls.push(cell.stiffness * excess - cell.pressure);
         }
         let mut slope = vec![DVec3::ZERO; self.points.len()];
-        for (face, fan) in self.fans(rings) {
+        let mut normals = normals.into_iter();
+        for (face, Fan { ring, center }) in self.fans(rings) {
             // All cells beside a face together pull on its cone from the origin, and on its area.
             let (mut pull, mut pull_of_offset) = (0.0, DVec3::ZERO);
             for Beside { cell, offset, sign } in &face.beside {
                 pull += sign * pulls[*cell] / 6.0;
                 pull_of_offset += *offset * (sign * pulls[*cell] / 6.0);
             }
-            let count = fan.ring.len();
-            let center = fan.center;
-            let mut of_center = DVec3::ZERO;
-            for k in 0..count {
+            let count = ring.len();
+            let (mut doubled_areas, mut of_center) = (0.0, DVec3::ZERO);
+            for ((k, a), normal) in ring.iter().enumerate().zip(&mut normals) {
                 let next = (k + 1) % count;
-                let [a, b] = [k, next].map(|corner| fan.ring[corner]);
-                let triangle = Triangle::new([center, a, b]);
-                let Triangle { normal, doubled_area, .. } = triangle;
-                area += 0.5 * face.tension * doubled_area;
+                let b = ring[next];
+                let doubled_area = normal.length();
+                doubled_areas += doubled_area;
                 let half_pull = normal * (0.5 * face.tension / doubled_area.max(f64::MIN_POSITIVE));
-                // A cone from an origin that is off changes as an area does.
-                let [at_center, at_a, at_b] = triangle.gradients(half_pull - pull_of_offset);
-                of_center += at_center + a.cross(b) * pull;
+                of_center += half_pull.cross(b - *a) + a.cross(b) * pull;
                 if let Place::Moving(moving, _) = face.corners[k] {
-                    slope[moving] += at_a + b.cross(center) * pull;
+                    slope[moving] += half_pull.cross(center - b);
                 }
                 if let Place::Moving(moving, _) = face.corners[next] {
-                    slope[moving] += at_b + center.cross(a) * pull;
+                    slope[moving] += half_pull.cross(*a - center);
                 }
             }
-            for corner in &face.corners {
+            area += 0.5 * face.tension * doubled_areas;
+            let of_center = of_center / count as f64;
+            // A cone from an origin that is off changes as an area does.
+            let pull_of_cone = center * pull - pull_of_offset;
+            for (k, corner) in face.corners.iter().enumerate() {
                 if let Place::Moving(moving, _) = corner {
-                    slope[*moving] += of_center / count as f64;
+                    let chord = ring[(k + 1) % count] - ring[(k + count - 1) % count];
+                    slope[*moving] += of_center + chord.cross(pull_of_cone);
                 }
             }
         }

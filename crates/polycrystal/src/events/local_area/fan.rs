@@ -8,24 +8,14 @@ pub(super) struct Fan<'a> {
     pub(super) center: DVec3,
 }
 
-/// Of a fan six times the volume of the cone from the origin, and its normal, twice as long as its area.
-///
-/// From an origin that is off by o, the cone has `o normal` less.
-pub(super) struct VolumeGradient {
-    pub(super) volume: f64,
-    pub(super) normal: DVec3,
-}
-
 impl Fan<'_> {
     pub(super) fn area(&self) -> f64 {
-        let ends = self.ring.iter().zip(self.ring.iter().cycle().skip(1));
-        ends.map(|(a, b)| 0.5 * (*a - self.center).cross(*b - self.center).length()).sum()
+        self.normals().map(|normal| 0.5 * normal.length()).sum()
     }
 
-    pub(super) fn volume_gradient(&self) -> VolumeGradient {
+    /// The normals of the triangles, twice as long as their areas.
+    pub(super) fn normals(&self) -> impl Iterator<Item = DVec3> {
         let ends = self.ring.iter().zip(self.ring.iter().cycle().skip(1));
-        let normal: DVec3 = ends.map(|(a, b)| (*a - self.center).cross(*b - self.center)).sum();
-        // All triangles end at the centre.
-        VolumeGradient { volume: self.center.dot(normal), normal }
+        ends.map(|(a, b)| (*a - self.center).cross(*b - self.center))
     }
 }
