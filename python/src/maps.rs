@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use grainsmooth::cli::Arguments;
 use grainsmooth::texture::SymmetryError;
 use grainsmooth::{
@@ -60,7 +60,8 @@ pub fn of_labels(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Polycrystal> {
     let labels = list(LABELS, &labels)?;
-    let map = LabelMap { shape, spacing: DVec3::from(spacing), origin: DVec3::from(origin), labels };
+    let (spacing, origin) = (DVec3::from(spacing), DVec3::from(origin));
+    let map = LabelMap { shape, spacing, origin, periodic: BVec3::FALSE, labels };
     let options = MapOptions { exterior_label, min_voxels, ..MapOptions::default() };
     let measured =
         MeasuredMap::of_labels(map, &options).map_err(|error| invalid(format!("{LABELS}: {error}")))?;

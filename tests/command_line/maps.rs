@@ -257,6 +257,80 @@ fn every_format_takes_the_network_of_a_map() {
 }
 
 #[test]
+fn grains_of_a_map_that_repeats_are_whole() {
+    let workplace = Workplace::new();
+    let labels = |name: &str| workplace.bytes(name)[128..].to_vec();
+    for (dimension, axes, voxels) in [
+        ("", "x,y,z", "18 20 16"),
+        ("", "y", "18 20 16"),
+        ("--dim 2", "x,y", "30 20"),
+        ("--dim 2", "x", "30 20"),
+    ] {
+        let synthetic =
+            format!("--seeds 30 {dimension} --periodic {axes} --relax 0 --voxels {voxels} -o a.npy");
+        workplace.run(&synthetic);
+        let said = workplace
+            .run(&format!("smooth a.npy --periodic {axes} --decimate 0 --voxels {voxels} -o b.npy -o b.vtp"));
+        assert!(said.contains("one period apart"), "{said}");
+        assert!(labels("a.npy") == labels("b.npy"), "{axes}");
+        workplace.run(&format!("smooth a.npy --periodic {axes} --relax 0.02 -o c.vtp"));
+        let good = workplace.command("check b.vtp c.vtp").assert().success().get_output().clone();
+        let said = String::from_utf8(good.stdout).unwrap();
+        assert_eq!(said.matches("30 grains").count(), 2, "{said}");
+    }
+    for (axes, message) in [
+        (
+            "x,y,z",
+            "a.npy: is a map of pixels, which does not repeat along z; give x, y or x,y with --periodic",
+        ),
+        (
+            "x,y",
+            "a.npy: grain 0 meets its own image through the sides of the box, so it has no end; leave out the axes along which it does, or take a larger map",
+        ),
+    ] {
+        workplace.put("a.npy", npy(&[4, 3], &[0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1]));
+        workplace.refuses(&format!("smooth a.npy --periodic {axes}"), FAILED, message);
+    }
+    workplace.refuses(
+        "check b.vtp --labels a.npy --periodic x",
+        FAILED,
+        "a.npy: is taken to repeat, and whole grains are not compared; compare a network that was made without --periodic",
+    );
+}
+
+#[test]
+fn parts_of_a_label_are_one_grain_or_several() {
+    let workplace = Workplace::new();
+    // Label 1 at both ends, and in one pixel of the middle.
+    let label = |[x, y]: [usize; 2]| if !(3..9).contains(&x) || [x, y] == [6, 4] { 1 } else { 2 };
+    let labels: Vec<u8> = (0..12 * 8).map(|pixel| label([pixel / 8, pixel % 8])).collect();
+    workplace.put("map.npy", npy(&[12, 8], &labels));
+    for (options, ids, dropped) in [
+        ("--parts keep --min-voxels 2", &[1, 2][..], ""),
+        ("--parts split", &[1, 1, 1, 2], ""),
+        ("--parts split --min-voxels 2", &[1, 1, 2], "; 1 in 1 small grain went to neighbours"),
+        // Both ends are one.
+        ("--parts split --min-voxels 2 --periodic x", &[1, 2], "; 1 in 1 small grain went to neighbours"),
+    ] {
+        let said = workplace.run(&format!("smooth map.npy {options} -o a.vtp --stats a.json"));
+        assert!(said.contains(&format!("map         12 x 8 pixels{dropped}\n")), "{said}");
+        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let grains = statistics["grains"].as_array().unwrap();
+        let found: Vec<_> = grains.iter().map(|grain| grain["SeedId"].as_u64().unwrap()).collect();
+        assert_eq!(found, ids, "{options}");
+        if !options.contains("periodic") {
+            let check = format!("check a.vtp --labels map.npy {options}");
+            let said = workplace.command(&check).assert().success().get_output().stdout.clone();
+            let said = String::from_utf8(said).unwrap();
+            assert!(
+                said.contains("the centres of all 96 voxels lie in the grains of their labels"),
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
 fn small_grains_go_to_their_neighbours() {
     let workplace = workplace();
     let said = workplace.run("smooth volume.npy --min-voxels 80 -o a.vtp --stats a.json");

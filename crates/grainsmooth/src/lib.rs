@@ -114,7 +114,7 @@ pub use input::volume_file::{Tie, VolumeFile};
 pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
 pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
 pub use maps::network_options::MapNetworkOptions;
-pub use maps::options::{Axes, Crop, MapOptions};
+pub use maps::options::{Axes, Crop, LabelParts, MapOptions};
 pub use maps::orientations::OrientationMap;
 pub use maps::read::read_map;
 pub use measure::report::{FittedDistribution, MeasuredPhase, MeasuredTexture, SampleReport};

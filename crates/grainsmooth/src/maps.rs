@@ -17,6 +17,7 @@ pub(crate) mod orientation_map;
 pub(crate) mod orientations;
 mod raw;
 pub(crate) mod read;
+mod sets;
 mod stored_numbers;
 mod tesr;
 mod vti;

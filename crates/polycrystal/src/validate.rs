@@ -30,6 +30,12 @@ use crate::{Certificate, Expected, Faults, GrainId, Network, Surface, dihedral_a
 /// # Panics
 /// When there is not one point per vertex.
 pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faults> {
+    let certificate = certificate(network, points);
+    if certificate.is_good() { Ok(certificate) } else { Err(certificate.faults) }
+}
+
+/// What [`validate`] finds, with all that is wrong.
+pub(crate) fn certificate(network: &Network, points: &[DVec3]) -> Certificate {
     let level = network.finest();
     let sides = network.sides();
     let surface = Surface::of_level(level, points, &sides);
@@ -53,7 +59,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
     if certificate.is_good() && network.domain().is_periodic() {
         certificate.angles = dihedral_angles(network, level, points);
     }
-    if certificate.is_good() { Ok(certificate) } else { Err(certificate.faults) }
+    certificate
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! no voxel changes its grain: the boundaries bend as little as they can there, and every grain keeps the volume of its voxels.
 
 mod bending;
+mod copies;
 mod decimation;
 mod elements;
 mod graph;
@@ -16,22 +17,26 @@ mod surface;
 mod tuning;
 mod untangling;
 mod volumes;
+mod whole_grains;
 
 use glam::DVec3;
 
-use crate::{Certificate, Junctions, Network, NetworkError, Side, Surface};
+use crate::network::labelled_mesh::but_folded;
+use crate::validate::certificate;
+use crate::{Certificate, Junctions, Network, NetworkError, Surface};
 use bending::{Boxes, least_bending};
-use decimation::Decimation;
+use decimation::{Decimation, Faulty};
 use elements::{CutFaces, at_corners};
 use graph::Graph;
 use labels::OUTSIDE;
 pub use labels::{VoxelLabel, Voxels};
 use lattice::Lattice;
-use staircase::{Kind, Staircase};
+use staircase::{Staircase, sides_of_whole_grains};
 use surface::VoxelSurface;
 pub use tuning::VoxelTuning;
 use untangling::{Untangling, starts};
 use volumes::{VolumeSearch, Wanted};
+use whole_grains::whole_grains;
 
 /// The smooth network of labelled voxels.
 #[derive(Debug, Clone)]
@@ -65,7 +70,7 @@ impl VoxelOptions {
 ///
 /// `progress` is told how many steps of how many are done. Points of boundaries follow the mean of their neighbours, points of lines that of both neighbours along the line,
 /// by least squares within boxes (after Lempitsky, Surface extraction from binary volumes with higher-order smoothness, 2010, here for any number of labels).
-/// Lines that go where grains touch along an edge only are parted for the grain with more voxels.
+/// Lines that go where grains touch along an edge only are parted for the grain with more voxels. Where the box has periods, grains go on through its sides, and are whole.
 ///
 /// Then short edges collapse, if that is asked for. Grains keep their volumes, but the middle of a voxel near a boundary may come to lie in the grain beyond.
 /// Where the certificate finds a fault in what is left, more points stay.
@@ -85,7 +90,7 @@ impl VoxelOptions {
 ///
 /// # Errors
 /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`] where some number below the largest has no voxel; [`NetworkError::VoxelsTouch`] when a grain touches itself and its voxels
-/// cannot be relabelled; [`NetworkError::Invalid`] when elements cross that could not be untangled, or volumes are not those of the voxels.
+/// cannot be relabelled; [`NetworkError::ShortPeriod`], [`NetworkError::EndlessGrain`] and [`NetworkError::PeriodicPores`] where the box has periods; [`NetworkError::Invalid`] when elements cross that could not be untangled, or volumes are not those of the voxels.
 pub fn smooth_voxels(
     voxels: &Voxels,
     options: VoxelOptions,
@@ -105,29 +110,47 @@ pub fn smooth_voxels_tuned(
     let mut lattice = Lattice::new(voxels)?;
     let mut mixed = lattice.mixed_places();
     let relabelled = lattice.part_what_touches(&mut mixed)?;
-    let staircase = Staircase::new(&lattice, &mixed);
-    let sides: Vec<[Side; 2]> = staircase.kinds.iter().map(Kind::sides).collect();
+    let staircase = Staircase::new(&lattice, &mixed, &whole_grains(&lattice, &mixed)?);
+    let is_periodic = voxels.domain().is_periodic();
+    let sides = sides_of_whole_grains(&staircase.kinds, is_periodic);
     let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
     let is_open = staircase.kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
     let wanted = Wanted { volumes: &counts, sides: &sides, is_open };
     let whole = smoothed(&staircase, &lattice, &wanted, tuning, &progress);
     let voxel = voxels.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
-    let network = |found: &VoxelSurface| {
+    let network = |found: &VoxelSurface| -> Result<SmoothedVoxels, (NetworkError, Faulty)> {
         let points = found.in_domain(voxels);
-        let surface = Surface { points: &points, ..found.as_surface(&sides) };
-        let network = Network::of_measured(voxels.domain(), &surface, Some(&volumes), options.junctions);
-        network.map(|(network, points, certificate)| SmoothedVoxels {
-            network,
-            points,
-            certificate,
-            relabelled,
-        })
+        let faulty = |error: NetworkError, surface: &Surface<'_>| {
+            let faulty = match &error {
+                NetworkError::Invalid(faults) => Faulty::new(faults, surface, voxels),
+                _ => Faulty::default(),
+            };
+            (error, faulty)
+        };
+        let (network, points, certificate) = if is_periodic {
+            let faces = found.torus_faces(&staircase.kinds);
+            let (network, points) =
+                Network::of_torus_faces(voxels.domain(), &points, faces, volumes.clone(), options.junctions)
+                    .map_err(|error| (error, Faulty::default()))?;
+            let certificate = but_folded(certificate(&network, &points)).map_err(|error| {
+                let sides = network.sides();
+                faulty(error, &Surface::of_level(network.finest(), &points, &sides))
+            })?;
+            (network, points, certificate)
+        } else {
+            let elements = found.cut.elements();
+            let surface =
+                Surface { points: &points, elements, boundary_of: &found.cut.kind_of, sides: &sides };
+            Network::of_measured(voxels.domain(), &surface, Some(&volumes), options.junctions)
+                .map_err(|error| faulty(error, &surface))?
+        };
+        Ok(SmoothedVoxels { network, points, certificate, relabelled })
     };
     if options.shortest_edge > 0.0 {
         let decimation = Decimation {
             whole: &whole,
-            domain: voxels.domain(),
+            domain: &lattice.domain(),
             lattice: &lattice,
             kinds: &staircase.kinds,
             wanted: &wanted,
@@ -138,12 +161,13 @@ pub fn smooth_voxels_tuned(
         for _ in 0..tuning.decimations {
             let decimated = decimation.decimated(&is_held);
             match network(&decimated) {
-                Err(NetworkError::Invalid(faults)) => decimation.hold(&mut is_held, &faults, &decimated),
-                found => return found,
+                Ok(found) => return Ok(found),
+                Err((NetworkError::Invalid(_), faulty)) => decimation.hold(&mut is_held, faulty),
+                Err((other, _)) => return Err(other),
             }
         }
     }
-    network(&whole)
+    network(&whole).map_err(|(error, _)| error)
 }
 
 /// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings.
@@ -159,9 +183,9 @@ fn smoothed(
     let middles = &boxes.middles;
     let faces_at = at_corners(middles.len(), faces.len(), |face| faces.corners(face));
     let graph = Graph::new(staircase, &faces_at);
-    let starts = starts(middles, &faces_at, |face| faces.corners(face as usize), tuning.apart);
+    let starts = starts(&boxes, &faces_at, |face| faces.corners(face as usize), tuning.apart);
     let mut points = least_bending(&graph, &starts, &boxes, tuning, progress);
-    let cut = CutFaces::new(staircase, &points);
+    let cut = CutFaces::new(staircase, lattice, &points);
     let search = VolumeSearch::new(middles, &cut, wanted, tuning);
     let volume_error = search.restore(&mut points, &boxes, &vec![false; middles.len()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };

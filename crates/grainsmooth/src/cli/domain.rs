@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::spelling::length;
+use crate::spelling::{self, length};
 use crate::{Error, FileDomain, Shape};
 use clap::Args;
 use glam::{BVec3, DVec3};
@@ -53,7 +53,7 @@ pub struct DomainArguments {
     /// or those of a .tess file]
     ///
     /// Example: --periodic x,y
-    #[arg(long, value_name = "AXES", value_parser = parse_axes)]
+    #[arg(long, value_name = "AXES", value_parser = spelling::axes)]
     periodic: Option<BVec3>,
 }
 
@@ -189,21 +189,4 @@ pub(crate) fn parse_dimension(text: &str) -> Result<Dimension, String> {
 
 fn parse_side(text: &str) -> Result<f64, String> {
     length(text).ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
-}
-
-fn parse_axes(text: &str) -> Result<BVec3, String> {
-    if text == "none" {
-        return Ok(BVec3::FALSE);
-    }
-    let mut axes = [false; 3];
-    let known =
-        text.split(',').all(|name| match ["x", "y", "z"].iter().position(|axis| *axis == name.trim()) {
-            Some(axis) => !std::mem::replace(&mut axes[axis], true),
-            None => false,
-        });
-    if known {
-        Ok(axes.into())
-    } else {
-        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z; or none".to_owned())
-    }
 }

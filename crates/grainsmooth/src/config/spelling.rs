@@ -5,6 +5,7 @@ use std::ops::{RangeBounds, RangeInclusive};
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use glam::BVec3;
 use serde::Serializer;
 use voronoi::Domain;
 
@@ -41,6 +42,24 @@ pub(crate) fn number(
     remedy: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| remedy.to_owned())
+}
+
+/// Axes by name, or none.
+pub(crate) fn axes(text: &str) -> Result<BVec3, String> {
+    if text == "none" {
+        return Ok(BVec3::FALSE);
+    }
+    let mut named = [false; 3];
+    let known =
+        text.split(',').all(|name| match ["x", "y", "z"].iter().position(|axis| *axis == name.trim()) {
+            Some(axis) => !std::mem::replace(&mut named[axis], true),
+            None => false,
+        });
+    if known {
+        Ok(named.into())
+    } else {
+        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z; or none".to_owned())
+    }
 }
 
 /// The name of one of several values on the command line.

@@ -2,14 +2,15 @@
 
 use std::fmt;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use texture::{CrystalSymmetry, Orientation};
 use voronoi::Domain;
 
 use super::cleaning::{NO_GRAIN, clean};
 use super::neighbors::Grid;
-use super::options::{Crop, MapOptions};
+use super::options::{Crop, LabelParts, MapOptions};
 use super::orientation_map::PointList;
+use super::sets::Sets;
 use crate::error::map_file::MapProblem;
 use crate::figures::significant::significant;
 
@@ -22,6 +23,8 @@ pub struct LabelMap {
     pub spacing: DVec3,
     /// The lower corner of the first voxel.
     pub origin: DVec3,
+    /// The axes along which the map repeats: the last voxels touch the first.
+    pub periodic: BVec3,
     /// The label of each voxel: as many as there are voxels.
     pub labels: Vec<i32>,
 }
@@ -38,11 +41,8 @@ impl LabelMap {
     /// [`VoronoiError`](voronoi::VoronoiError) where it has no size.
     pub fn domain(&self) -> Result<Domain, voronoi::VoronoiError> {
         let upper = self.origin + self.spacing * DVec3::from_array(self.shape.map(|count| count as f64));
-        if self.is_plane() {
-            Domain::rectangle(self.origin, upper)
-        } else {
-            Domain::cuboid(self.origin, upper)
-        }
+        let domain = if self.is_plane() { Domain::rectangle } else { Domain::cuboid }(self.origin, upper)?;
+        Ok(domain.with_periods(self.periodic))
     }
 
     /// The lower and the upper corner of the box around all grains, whose labels are not below 0.
@@ -75,11 +75,12 @@ impl LabelMap {
             shape: [xs.len(), ys.len(), zs.len()],
             origin: self.origin + first * self.spacing,
             spacing: self.spacing,
+            periodic: self.periodic,
             labels,
         })
     }
 
-    /// The same without small grains, its grains numbered from 0 in the order of their labels.
+    /// The same without small grains, its grains numbered from 0 in the order of their labels, and parts of one label in the order of their first voxels.
     ///
     /// # Errors
     /// [`MapProblem::NoGrain`].
@@ -89,9 +90,18 @@ impl LabelMap {
                 *label = NO_GRAIN;
             }
         }
+        let grid = Grid::Voxels(self.shape, self.periodic);
+        let label_of_part = match options.parts {
+            LabelParts::Keep => None,
+            LabelParts::Split => Some(split(&mut self.labels, grid)),
+        };
         let is_hole = vec![false; self.labels.len()];
-        let cleaned = clean(&mut self.labels, is_hole, Grid::Voxels(self.shape), options.min_voxels)?;
-        let labels = cleaned.kept.into_iter().map(i32::cast_unsigned).collect();
+        let cleaned = clean(&mut self.labels, is_hole, grid, options.min_voxels)?;
+        let label = |kept: i32| {
+            let kept = kept.cast_unsigned();
+            label_of_part.as_ref().map_or(kept, |labels| labels[kept as usize])
+        };
+        let labels = cleaned.kept.into_iter().map(label).collect();
         Ok(MeasuredMap {
             map: self,
             labels,
@@ -100,6 +110,29 @@ impl LabelMap {
             crystals: None,
         })
     }
+}
+
+/// Gives each part of a label that hangs together through faces a number of its own, in the order of labels and first voxels, and returns the label of each.
+fn split(labels: &mut [i32], grid: Grid) -> Vec<u32> {
+    let mut sets = Sets::new(labels.len());
+    for (place, label) in labels.iter().enumerate() {
+        for other in grid.neighbors(place).filter(|other| labels[*other] == *label) {
+            sets.join(place, other);
+        }
+    }
+    let parts = sets.numbers(|place| labels[place] != NO_GRAIN);
+    let mut known: Vec<(i32, i32)> = labels.iter().copied().zip(parts.iter().copied()).collect();
+    known.retain(|(_, part)| *part != NO_GRAIN);
+    known.sort_unstable();
+    known.dedup();
+    let mut numbers = vec![NO_GRAIN; known.len()];
+    for (number, (_, part)) in (0..).zip(&known) {
+        numbers[part.cast_unsigned() as usize] = number;
+    }
+    for (label, part) in labels.iter_mut().zip(parts) {
+        *label = usize::try_from(part).map_or(NO_GRAIN, |part| numbers[part]);
+    }
+    known.into_iter().map(|(label, _)| label.cast_unsigned()).collect()
 }
 
 /// What programs call the labels of grains: DREAM.3D, DAMASK and Neper, ParaView's filters, this program, LabDCT.
@@ -140,11 +173,18 @@ impl MeasuredMap {
     ///
     /// # Errors
     /// [`MapProblem`] where labels and options do not go together.
-    pub fn of_labels(map: LabelMap, options: &MapOptions) -> Result<Self, MapProblem> {
-        match &options.crop {
-            Some(crop) => map.cropped(crop)?.cleaned(options),
-            None => map.cleaned(options),
+    pub fn of_labels(mut map: LabelMap, options: &MapOptions) -> Result<Self, MapProblem> {
+        map.periodic |= options.periodic.unwrap_or_default();
+        if map.is_plane() && map.periodic.z {
+            return Err(MapProblem::Unfit {
+                what: "is a map of pixels, which does not repeat along z",
+                remedy: "give x, y or x,y with --periodic",
+            });
         }
+        if let Some(crop) = &options.crop {
+            map = map.cropped(crop)?;
+        }
+        map.cleaned(options)
     }
 }
 

@@ -1,10 +1,12 @@
 //! Which places of a grid touch each other.
 
+use glam::BVec3;
+
 /// A grid of voxels, pixels or hexagons, x fastest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Grid {
-    /// Each touches six others, in the plane four.
-    Voxels([usize; 3]),
+    /// So many along each axis. Each touches six others, in the plane four; along periodic axes the last touch the first.
+    Voxels([usize; 3], BVec3),
     /// Each touches six others.
     Hexagons(Hexagons),
 }
@@ -68,7 +70,7 @@ impl Grid {
     /// Whether there is such a place: the last ones of shifted rows may be none.
     pub(super) fn exists(self, place: usize) -> bool {
         match self {
-            Self::Voxels(_) => true,
+            Self::Voxels(..) => true,
             Self::Hexagons(hexagons) => {
                 hexagons.exists(place % hexagons.columns(), place / hexagons.columns())
             }
@@ -78,13 +80,18 @@ impl Grid {
     /// The places that touch one.
     pub(super) fn neighbors(self, place: usize) -> impl Iterator<Item = usize> {
         let all = match self {
-            Self::Voxels([nx, ny, nz]) => {
-                let beside = |at: usize, count: usize, step: usize| {
-                    [(at > 0).then(|| place - step), (at + 1 < count).then(|| place + step)]
+            Self::Voxels([nx, ny, nz], periodic) => {
+                let beside = |axis: usize, at: usize, count: usize, step: usize| {
+                    let around = periodic.test(axis).then_some(step * (count - 1));
+                    let before =
+                        if at > 0 { Some(place - step) } else { around.map(|around| place + around) };
+                    let after =
+                        if at + 1 < count { Some(place + step) } else { around.map(|around| place - around) };
+                    [before, after]
                 };
-                let [left, right] = beside(place % nx, nx, 1);
-                let [lower, upper] = beside(place / nx % ny, ny, nx);
-                let [below, above] = beside(place / nx / ny, nz, nx * ny);
+                let [left, right] = beside(0, place % nx, nx, 1);
+                let [lower, upper] = beside(1, place / nx % ny, ny, nx);
+                let [below, above] = beside(2, place / nx / ny, nz, nx * ny);
                 [left, right, lower, upper, below, above]
             }
             Self::Hexagons(hexagons) => hexagons.neighbors(place),

@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 use super::ebsd_options::EbsdOptions;
 use super::number_type::NumberType;
 use crate::error::map_file::MapProblem;
-use crate::spelling::whole_number;
+use crate::spelling::{axes, whole_number};
 
 /// How a map is read.
 #[derive(Debug, Clone, Default, Args)]
@@ -64,6 +64,20 @@ pub struct MapOptions {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=u64::MAX), allow_negative_numbers = true)]
     pub min_voxels: u64,
 
+    /// What becomes of a label whose voxels hang together in several parts: one grain of several bodies (`keep`), or a grain for each part (`split`)
+    ///
+    /// Voxels hang together through their faces. `SeedId` is the label of all parts.
+    ///
+    /// Example: grainsmooth smooth map.vti --parts split --min-voxels 8
+    #[arg(long, value_name = "RULE", value_enum, default_value_t)]
+    pub parts: LabelParts,
+
+    /// Axes along which the map repeats, such as x,y,z: its last voxels touch the first, and grains stay whole [default: none]
+    ///
+    /// Example: grainsmooth smooth phase_field.vti --periodic x,y,z
+    #[arg(long, value_name = "AXES", value_parser = axes, conflicts_with = "crop")]
+    pub periodic: Option<BVec3>,
+
     /// How grains are found in a map of orientations.
     #[command(flatten)]
     pub ebsd: EbsdOptions,
@@ -81,6 +95,8 @@ impl MapOptions {
             ("--crop", self.crop.is_some()),
             ("--exterior-label", self.exterior_label.is_some()),
             ("--min-voxels", self.min_voxels > 1),
+            ("--parts", self.parts != LabelParts::Keep),
+            ("--periodic", self.periodic.is_some()),
         ];
         let first = all.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
         first.or_else(|| self.ebsd.first_given())
@@ -104,6 +120,16 @@ pub enum Axes {
     Xyz,
     /// x last.
     Zyx,
+}
+
+/// What becomes of a label in several parts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum LabelParts {
+    /// One grain of several bodies.
+    #[default]
+    Keep,
+    /// A grain for each.
+    Split,
 }
 
 /// A part of a map.

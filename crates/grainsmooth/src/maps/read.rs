@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 use super::ebsd::grains::grains;
 use super::label_map::{FileMap, LabelMap, MapContent, MeasuredMap};
-use super::options::MapOptions;
+use super::options::{LabelParts, MapOptions};
 use super::orientation_map::{Fault, PointList, ang, ctf};
 use super::stored_numbers::Source;
 use super::{hdf5, mhd, npy, npz, nrrd, raw, tesr, vti};
@@ -116,6 +116,8 @@ fn check_of_points(options: &MapOptions) -> Result<(), MapProblem> {
     let of_labels = [
         ("--label-array", options.label_array.is_some()),
         ("--exterior-label", options.exterior_label.is_some()),
+        ("--parts", options.parts != LabelParts::Keep),
+        ("--periodic", options.periodic.is_some()),
     ];
     match of_labels.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => Err(MapProblem::OtherKind { kind: "a map of orientations", option }),
@@ -136,7 +138,7 @@ fn labelled(found: FileMap, options: &MapOptions) -> Result<MeasuredMap, MapProb
         return Err(MapProblem::Spacing { axis, spacing });
     }
     let origin = origin.filter(|origin| origin.is_finite()).unwrap_or(DVec3::ZERO);
-    MeasuredMap::of_labels(LabelMap { shape, spacing, origin, labels }, options)
+    MeasuredMap::of_labels(LabelMap { shape, spacing, origin, periodic: BVec3::FALSE, labels }, options)
 }
 
 fn known_extensions() -> String {

@@ -37,12 +37,12 @@ pub struct MapRun {
 /// use std::path::Path;
 /// use std::time::Duration;
 ///
-/// use grainsmooth::glam::DVec3;
+/// use grainsmooth::glam::{BVec3, DVec3};
 /// use grainsmooth::{FileOptions, LabelMap, MapNetworkOptions, MapOptions, MapRun, MeasuredMap, smooth_map};
 ///
 /// // 4 x 4 x 4 voxels, x fastest: grains 10 and 20. A file would be read by `read_map`.
 /// let labels = (0..64).map(|voxel| if voxel % 4 < 2 { 10 } else { 20 }).collect();
-/// let map = LabelMap { shape: [4, 4, 4], spacing: DVec3::ONE, origin: DVec3::ZERO, labels };
+/// let map = LabelMap { shape: [4, 4, 4], spacing: DVec3::ONE, origin: DVec3::ZERO, periodic: BVec3::FALSE, labels };
 /// let measured = MeasuredMap::of_labels(map, &MapOptions { min_voxels: 1, ..MapOptions::default() })?;
 /// let network = MapNetworkOptions { decimate: Some(0.0), ..MapNetworkOptions::default() };
 /// let run = MapRun { command_line: String::new(), file: FileOptions::default(), network, read_in: Duration::ZERO };

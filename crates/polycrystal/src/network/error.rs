@@ -168,6 +168,32 @@ pub enum NetworkError {
         /// Number of points.
         places: usize,
     },
+    /// There are too few voxels along a period.
+    #[error(
+        "has {voxels} voxels along {axis}, where it repeats; at least {least} are needed there: leave {axis} out of its periods"
+    )]
+    ShortPeriod {
+        /// The axis.
+        axis: char,
+        /// Number of voxels along it.
+        voxels: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// A grain of a map that repeats meets its own image, so that it is not whole anywhere.
+    #[error(
+        "grain {} meets its own image through the sides of the box, so it has no end; leave out the axes along which it does, or take a larger map",
+        grain.0
+    )]
+    EndlessGrain {
+        /// The grain.
+        grain: GrainId,
+    },
+    /// A map that repeats has voxels without a grain.
+    #[error(
+        "a map that repeats has no exterior, and this one has voxels without a grain; give their label to a grain, or leave the periods out"
+    )]
+    PeriodicPores,
     /// A grain of several cells is in pieces, or its cells touch in no more than a line somewhere.
     #[error("the cells of grain {} are not connected by faces; number its pieces separately", grain.0)]
     GrainInPieces {
@@ -306,6 +332,9 @@ impl NetworkError {
             | Self::MissingGrain { .. }
             | Self::NoGrain
             | Self::VoxelsTouch { .. }
+            | Self::ShortPeriod { .. }
+            | Self::EndlessGrain { .. }
+            | Self::PeriodicPores
             | Self::BadEdgeLength(_)
             | Self::BadElementSize(_)
             | Self::RemeshPlane

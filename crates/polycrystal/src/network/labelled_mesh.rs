@@ -47,15 +47,26 @@ impl SurfaceKind<'_> {
                 certify(surface, &expected)
             }
         };
-        let is_allowed =
-            |fault: &Fault| matches!((self, fault), (Self::Measured { .. }, Fault::Folded { .. }));
-        if certificate.faults.0.iter().all(is_allowed) {
-            return Ok(certificate);
+        match self {
+            Self::Whole if certificate.is_good() => Ok(certificate),
+            Self::Whole => Err(NetworkError::Invalid(certificate.faults)),
+            Self::Measured { .. } => but_folded(certificate),
         }
-        let mut faults = certificate.faults;
-        faults.0.retain(|fault| !is_allowed(fault));
-        Err(NetworkError::Invalid(faults))
     }
+}
+
+/// What a measured surface is like, whose grains may be folded where they are thin.
+///
+/// # Errors
+/// [`NetworkError::Invalid`] where it has other faults.
+pub(crate) fn but_folded(certificate: Certificate) -> Result<Certificate, NetworkError> {
+    let is_allowed = |fault: &Fault| matches!(fault, Fault::Folded { .. });
+    if certificate.faults.0.iter().all(is_allowed) {
+        return Ok(certificate);
+    }
+    let mut faults = certificate.faults;
+    faults.0.retain(|fault| !is_allowed(fault));
+    Err(NetworkError::Invalid(faults))
 }
 
 impl ControlMesh {

@@ -7,7 +7,7 @@ use crate::network::build::{check_size, surface_size};
 use crate::network::control_mesh::ControlMesh;
 use crate::network::labelled_mesh::{SurfaceKind, wall_of};
 
-use crate::{Junctions, Network, NetworkError, Side, Surface};
+use crate::{Junctions, MeshSize, Network, NetworkError, Side, Surface};
 
 /// How far a copy may be from where whole periods lead from its original, in periods.
 const OFF_PERIOD: f64 = 1e-9;
@@ -34,9 +34,22 @@ impl Network {
         let certificate = SurfaceKind::Whole.certify(domain, surface)?;
         let volumes: Vec<f64> = certificate.grain_volumes.iter().map(|(_, volume)| *volume).collect();
         let places = places(domain, surface.points, originals)?;
-        let seeds = vec![domain.center(); volumes.len()];
         let faces = faces(domain, surface, &places)?;
-        let (complex, _) = Tessellation::of_whole_cells(domain, &seeds, surface.points, faces);
+        Self::of_torus_faces(domain, surface.points, faces, volumes, junctions)
+    }
+
+    /// The network of whole grains, from elements that are there once on the torus, each as one of its grains has it, and its points. No grain is checked.
+    pub(crate) fn of_torus_faces(
+        domain: &Domain,
+        points: &[DVec3],
+        faces: impl IntoIterator<Item = Face>,
+        volumes: Vec<f64>,
+        junctions: Junctions,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let seeds = vec![domain.center(); volumes.len()];
+        let (complex, _) = Tessellation::of_whole_cells(domain, &seeds, points, faces);
+        let count = complex.face_count() as u128;
+        check_size(domain, &MeshSize { points: points.len() as u128, edges: count, triangles: count }, 0)?;
         Self::assemble(domain, ControlMesh::of_elements(&complex, junctions)?, volumes, 0)
     }
 }
@@ -62,7 +75,8 @@ fn places(domain: &Domain, points: &[DVec3], originals: &[u32]) -> Result<Vec<Pe
     (0u32..).zip(originals).map(place).collect()
 }
 
-type Face = ([voronoi::Side; 2], Vec<PeriodicVertex>);
+/// An element: its sides as cells have them, and its corners.
+pub(crate) type Face = ([voronoi::Side; 2], Vec<PeriodicVertex>);
 
 /// The elements, each once, with the sides that they have where they stand.
 fn faces(

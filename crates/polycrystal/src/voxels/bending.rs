@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
+use crate::voxels::copies::across;
 use crate::voxels::graph::Graph;
 use crate::voxels::lattice::{Lattice, Place};
 use crate::voxels::tuning::VoxelTuning;
@@ -14,6 +15,8 @@ use crate::voxels::tuning::VoxelTuning;
 pub(super) struct Boxes {
     pub(super) middles: Vec<DVec3>,
     pub(super) is_fixed: Vec<BVec3>,
+    /// Lengths of the periods; 0 along other axes.
+    pub(super) periods: DVec3,
     within: f64,
 }
 
@@ -24,6 +27,7 @@ impl Boxes {
         Self {
             middles: places.par_iter().map(middle).collect(),
             is_fixed: places.par_iter().map(|place| lattice.is_on_walls(*place)).collect(),
+            periods: lattice.periods(),
             within,
         }
     }
@@ -76,7 +80,8 @@ pub(super) fn least_bending(
     let momentum = (1.0 - curvature) / (1.0 + curvature);
     let bend_of_middle = |point: usize| {
         let followed = graph.followed(point).iter();
-        let from = followed.map(|other| boxes.middles[point] - boxes.middles[*other as usize]);
+        let from =
+            followed.map(|other| across(boxes.periods, boxes.middles[*other as usize], boxes.middles[point]));
         from.sum::<DVec3>().as_vec3a()
     };
     let bends_of_middles: Vec<Vec3A> = (0..count).into_par_iter().map(bend_of_middle).collect();

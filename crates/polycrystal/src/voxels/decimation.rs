@@ -1,7 +1,7 @@
 //! Fewer elements: short edges collapse, and grains get their volumes back.
 
 use glam::DVec3;
-use voronoi::{CellId, Domain, PeriodicVertex, Translation, Wall};
+use voronoi::{Domain, PeriodicVertex};
 
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
@@ -9,21 +9,21 @@ use crate::mesh::id::id;
 use crate::network::grain_complex::limits;
 use crate::network::line_coarsening::coarsened_segments;
 use crate::voxels::bending::Boxes;
+use crate::voxels::copies::Copies;
 use crate::voxels::elements::{CutFaces, ElementList};
+use crate::voxels::labels::Voxels;
 use crate::voxels::lattice::Lattice;
 use crate::voxels::slabs::Slabs;
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volumes::{VolumeSearch, Wanted};
-use crate::{GrainId, Side};
-
-/// Stands for the surface of pores, and of a body that does not fill the box, as a wall. Those of the box have smaller numbers.
-const OPEN_WALL: u32 = 6;
+use crate::{BoundaryId, GrainId, Side, Surface};
 
 /// A surface whose short edges are to collapse.
 pub(super) struct Decimation<'a> {
     pub(super) whole: &'a VoxelSurface,
+    /// The box, in units of voxels.
     pub(super) domain: &'a Domain,
     pub(super) lattice: &'a Lattice,
     pub(super) kinds: &'a [Kind],
@@ -33,17 +33,58 @@ pub(super) struct Decimation<'a> {
     pub(super) tuning: &'a VoxelTuning,
 }
 
+/// Where a surface is faulty.
+#[derive(Default)]
+pub(super) struct Faulty {
+    /// In units of voxels.
+    pub(super) positions: Vec<DVec3>,
+    /// Those without their volumes.
+    pub(super) grains: Vec<GrainId>,
+}
+
+impl Faulty {
+    /// Where the faults of a surface are, as seen in the box of some voxels; along periods also beside it.
+    pub(super) fn new(faults: &Faults, surface: &Surface<'_>, voxels: &Voxels) -> Self {
+        let (mut positions, mut grains) = (Vec::new(), Vec::new());
+        let (domain, spacing) = (voxels.domain(), voxels.spacing());
+        let (size, periodic) = (domain.size() / spacing, domain.periodic());
+        for fault in &faults.0 {
+            let Some(position) = fault.position(surface) else {
+                grains.extend(fault.grains());
+                continue;
+            };
+            let position = (position - domain.lower()) / spacing;
+            let wrapped = position - (position / size).floor() * size;
+            let mut images = vec![DVec3::select(periodic, wrapped, position)];
+            for (axis, unit) in DVec3::AXES.into_iter().enumerate().filter(|(axis, _)| periodic.test(*axis)) {
+                let period = unit * size[axis];
+                images = images.into_iter().flat_map(|at| [at - period, at, at + period]).collect();
+            }
+            positions.extend(images);
+        }
+        Self { positions, grains }
+    }
+}
+
 impl Decimation<'_> {
     /// The surface with a part of its points, which move so that grains have their volumes; those that are held are all there.
     ///
     /// Small grains keep shorter edges.
     pub(super) fn decimated(&self, is_held: &[bool]) -> VoxelSurface {
         let VoxelSurface { points, places, cut } = self.whole;
+        // Elements of copies go with their originals.
+        let count = cut.kind_of.iter().take_while(|kind| kind.index() < self.kinds.len()).count();
+        let kind_of = &cut.kind_of[..count];
         let sides: Vec<[voronoi::Side; 2]> =
-            cut.kind_of.iter().map(|kind| cell_sides(&self.kinds[kind.index()])).collect();
-        let (is_left, kept, elements) = match &cut.elements {
+            kind_of.iter().map(|kind| self.kinds[kind.index()].cell_sides()).collect();
+        let vertex = |corner: u32| cut.copies.vertex(corner);
+        let kinds_of = |is_left: &mut dyn Iterator<Item = bool>| -> Vec<BoundaryId> {
+            kind_of.iter().zip(is_left).filter(|(_, is_left)| *is_left).map(|(kind, _)| *kind).collect()
+        };
+        let (kept, cut) = match &cut.elements {
             ElementList::Triangles(triangles) => {
-                let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(standing)).collect();
+                let triangles: Vec<_> =
+                    triangles[..count].iter().map(|corners| corners.map(vertex)).collect();
                 let limits = self.limits(is_held, triangles.iter().map(|corners| &corners[..]).zip(&sides));
                 let slabs = Slabs {
                     domain: self.domain,
@@ -55,28 +96,35 @@ impl Decimation<'_> {
                 };
                 let left = slabs.coarsened(&triangles);
                 let (kept, triangles) = renumbered(points.len(), &left);
-                (
-                    left.iter().map(Option::is_some).collect::<Vec<_>>(),
-                    kept,
-                    ElementList::Triangles(triangles),
-                )
+                let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));
+                let (triangles, copies) = self.unwrapped(kept.len(), &triangles, &mut kind_of);
+                (kept, CutFaces { elements: ElementList::Triangles(triangles), kind_of, copies })
             }
             ElementList::Segments(segments) => {
-                let segments: Vec<_> = segments.iter().map(|ends| ends.map(standing)).collect();
+                let segments: Vec<_> = segments[..count].iter().map(|ends| ends.map(vertex)).collect();
                 let limits = self.limits(is_held, segments.iter().map(|ends| &ends[..]).zip(&sides));
                 let left = coarsened_segments(self.domain, points, &limits, &segments, &sides);
                 let (kept, segments) = renumbered(points.len(), &left);
-                (left.iter().map(Option::is_some).collect(), kept, ElementList::Segments(segments))
+                let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));
+                let (segments, copies) = self.unwrapped(kept.len(), &segments, &mut kind_of);
+                (kept, CutFaces { elements: ElementList::Segments(segments), kind_of, copies })
             }
         };
-        let kinds = cut.kind_of.iter().zip(is_left).filter(|(_, is_left)| *is_left);
-        let cut = CutFaces { elements, kind_of: kinds.map(|(kind, _)| *kind).collect() };
         let places: Vec<_> = kept.iter().map(|point| places[*point as usize]).collect();
         let mut points: Vec<DVec3> = kept.iter().map(|point| points[*point as usize]).collect();
         let boxes = Boxes::new(&places, self.lattice, self.tuning.within_when_decimated);
         let search = VolumeSearch::new(&boxes.middles, &cut, self.wanted, self.tuning);
         search.restore(&mut points, &boxes, &vec![false; kept.len()]);
         VoxelSurface { points, places, cut }
+    }
+
+    fn unwrapped<const N: usize>(
+        &self,
+        count: usize,
+        elements: &[[PeriodicVertex; N]],
+        kind_of: &mut Vec<BoundaryId>,
+    ) -> (Vec<[u32; N]>, Copies) {
+        Copies::unwrapped(count, self.lattice.periods(), elements, kind_of, self.kinds)
     }
 
     /// Below what edges at each point are short; nothing where one stays.
@@ -96,22 +144,14 @@ impl Decimation<'_> {
         limits
     }
 
-    /// Holds the points of the whole surface around the faults of a decimated one, and those of grains without their volumes.
-    pub(super) fn hold(&self, is_held: &mut [bool], faults: &Faults, decimated: &VoxelSurface) {
-        let surface = decimated.as_surface(self.wanted.sides);
-        let (mut positions, mut grains) = (Vec::new(), Vec::new());
-        for fault in &faults.0 {
-            match fault.position(&surface) {
-                Some(position) => positions.push(position),
-                None => grains.extend(fault.grains()),
-            }
-        }
+    /// Holds the points of the whole surface around some positions, and those of some grains.
+    pub(super) fn hold(&self, is_held: &mut [bool], Faulty { positions, mut grains }: Faulty) {
         grains.sort_unstable();
         let is_faulty = |side: &Side| side.grain().is_some_and(|grain| grains.binary_search(&grain).is_ok());
         for (element, kind) in (0u32..).zip(&self.whole.cut.kind_of) {
             if self.wanted.sides[kind.index()].iter().any(is_faulty) {
                 for corner in self.whole.cut.elements().corners(element).iter() {
-                    is_held[*corner as usize] = true;
+                    is_held[self.whole.cut.copies.original(*corner) as usize] = true;
                 }
             }
         }
@@ -127,32 +167,19 @@ impl Decimation<'_> {
     }
 }
 
-/// A point that is not moved by periods, of which a map has none.
-fn standing(vertex: u32) -> PeriodicVertex {
-    PeriodicVertex { vertex, translation: Translation::ZERO }
-}
-
-/// What lies beside a kind of face, as cells have it.
-fn cell_sides(kind: &Kind) -> [voronoi::Side; 2] {
-    let wall = Wall::numbered(kind.wall.unwrap_or(OPEN_WALL));
-    kind.sides().map(|side| match side {
-        Side::Grain(GrainId(grain)) => voronoi::Side::Cell(CellId(grain)),
-        Side::Exterior => voronoi::Side::Wall(wall),
-    })
-}
-
 /// The points that are left, in order, and the elements by their numbers there.
 fn renumbered<const N: usize>(
     point_count: usize,
     left: &[Option<[PeriodicVertex; N]>],
-) -> (Vec<u32>, Vec<[u32; N]>) {
+) -> (Vec<u32>, Vec<[PeriodicVertex; N]>) {
     let mut is_left = vec![false; point_count];
     left.iter().flatten().flatten().for_each(|corner| is_left[corner.vertex as usize] = true);
     let kept: Vec<u32> =
         (0u32..).zip(is_left).filter(|(_, is_left)| *is_left).map(|(point, _)| point).collect();
     let mut numbers = vec![0; point_count];
     (0u32..).zip(&kept).for_each(|(number, point)| numbers[*point as usize] = number);
-    let elements = left.iter().flatten();
-    let elements = elements.map(|corners| corners.map(|corner| numbers[corner.vertex as usize])).collect();
+    let renumbered =
+        |corner: PeriodicVertex| PeriodicVertex { vertex: numbers[corner.vertex as usize], ..corner };
+    let elements = left.iter().flatten().map(|corners| corners.map(renumbered)).collect();
     (kept, elements)
 }

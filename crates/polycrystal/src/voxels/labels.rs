@@ -40,12 +40,12 @@ pub struct Voxels {
 }
 
 impl Voxels {
-    /// Labels, x fastest, of a box without periods. In the plane there is one voxel along z.
+    /// Labels, x fastest, of a box. In the plane there is one voxel along z. Along the periods of the box, the last voxels touch the first.
     ///
     /// # Panics
-    /// When the domain is no box or has periods, or when there is not one label for each voxel.
+    /// When the domain is no box, or when there is not one label for each voxel.
     pub fn new(domain: Domain, shape: [usize; 3], labels: Vec<VoxelLabel>) -> Self {
-        assert!(domain.is_box() && !domain.is_periodic(), "voxels fill a box without periods");
+        assert!(domain.is_box(), "voxels fill a box");
         assert_eq!(labels.len(), shape.iter().product::<usize>(), "each voxel has a label");
         Self { domain, shape, labels }
     }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use glam::BVec3;
+use glam::{BVec3, DVec3};
 use rayon::prelude::*;
-use voronoi::Dimension;
+use voronoi::{Dimension, Domain};
 
 use crate::voxels::labels::{OUTSIDE, Voxels};
 use crate::voxels::pattern::{Copies, Meeting, copies, octants_around, touching, two_sheets};
@@ -14,6 +14,8 @@ use crate::{GrainId, NetworkError};
 pub(super) struct Lattice {
     /// Number of voxels along each axis.
     pub(super) shape: [usize; 3],
+    /// Along which axes the last voxels touch the first.
+    pub(super) periodic: [bool; 3],
     pub(super) is_plane: bool,
     pub(super) labels: Vec<u32>,
     /// Number of voxels of each label but [`OUTSIDE`].
@@ -24,7 +26,7 @@ pub(super) struct Lattice {
     changes: BTreeMap<usize, u32>,
 }
 
-/// A place of the lattice: 0 at the lower walls, the number of voxels at the upper ones.
+/// A place of the lattice: 0 at the lower walls, the number of voxels at the upper ones. Along a period both are one place, that at 0.
 pub(super) type Place = [usize; 3];
 
 /// A place where boundaries are, and the copies of the point there.
@@ -33,6 +35,9 @@ pub(super) struct MixedPlace {
     pub(super) place: Place,
     pub(super) copies: Copies,
 }
+
+/// Fewer voxels than this along a period would have a neighbour on both sides.
+const LEAST_PERIOD: usize = 3;
 
 /// Rounds of changes around earlier ones. Measured maps take two or three.
 const MOST_ROUNDS: usize = 50;
@@ -45,7 +50,7 @@ struct Change {
 
 impl Lattice {
     /// # Errors
-    /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`].
+    /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`]; [`NetworkError::ShortPeriod`].
     pub(super) fn new(voxels: &Voxels) -> Result<Self, NetworkError> {
         let labels: Vec<u32> = voxels.labels().iter().map(|label| label.0).collect();
         let largest =
@@ -62,14 +67,52 @@ impl Lattice {
         {
             return Err(NetworkError::MissingGrain { grain });
         }
+        let (shape, periodic) = (voxels.shape(), voxels.domain().periodic().into());
+        for (axis, (voxels, is_periodic)) in ['x', 'y', 'z'].into_iter().zip(shape.into_iter().zip(periodic))
+        {
+            if is_periodic && voxels < LEAST_PERIOD {
+                return Err(NetworkError::ShortPeriod { axis, voxels, least: LEAST_PERIOD });
+            }
+        }
         let is_plane = voxels.domain().dimension() == Dimension::Two;
         let sizes = counts.clone();
-        Ok(Self { shape: voxels.shape(), is_plane, labels, counts, sizes, changes: BTreeMap::new() })
+        Ok(Self { shape, periodic, is_plane, labels, counts, sizes, changes: BTreeMap::new() })
+    }
+
+    /// The box that the voxels fill, in units of voxels.
+    pub(super) fn domain(&self) -> Domain {
+        let upper = DVec3::from_array(self.shape.map(|count| count as f64));
+        let domain = if self.is_plane { Domain::rectangle } else { Domain::cuboid }(DVec3::ZERO, upper);
+        domain.expect("there are voxels").with_periods(self.periodic.into())
+    }
+
+    /// Lengths of the periods in voxels; 0 along other axes.
+    pub(super) fn periods(&self) -> DVec3 {
+        let length = |axis: usize| if self.periodic[axis] { self.shape[axis] as f64 } else { 0.0 };
+        DVec3::from_array(std::array::from_fn(length))
+    }
+
+    /// Number of places along an axis.
+    pub(super) fn place_count(&self, axis: usize) -> usize {
+        self.shape[axis] + usize::from(!self.periodic[axis])
+    }
+
+    /// A coordinate of a voxel that is one of the grid; along a period any has such a voxel.
+    fn wrapped(&self, axis: usize, coordinate: Option<usize>) -> Option<usize> {
+        let count = self.shape[axis];
+        match coordinate {
+            Some(coordinate) if coordinate < count => Some(coordinate),
+            Some(coordinate) => self.periodic[axis].then(|| coordinate - count),
+            // Below 0.
+            None => self.periodic[axis].then(|| count - 1),
+        }
     }
 
     /// The axes across the walls that a place is on.
     pub(super) fn is_on_walls(&self, place: Place) -> BVec3 {
-        BVec3::from_array(std::array::from_fn(|axis| place[axis] == 0 || place[axis] == self.shape[axis]))
+        BVec3::from_array(std::array::from_fn(|axis| {
+            !self.periodic[axis] && (place[axis] == 0 || place[axis] == self.shape[axis])
+        }))
     }
 
     /// The axis along which there are most voxels; of equals the last, along which points are numbered.
@@ -89,11 +132,10 @@ impl Lattice {
     }
 
     /// The number of that voxel, if it is one of the grid.
-    fn voxel(&self, place: Place, step: [isize; 3]) -> Option<usize> {
+    pub(super) fn voxel(&self, place: Place, step: [isize; 3]) -> Option<usize> {
         let mut number = 0;
         for axis in [2, 1, 0] {
-            let coordinate =
-                place[axis].checked_add_signed(step[axis]).filter(|at| *at < self.shape[axis])?;
+            let coordinate = self.wrapped(axis, place[axis].checked_add_signed(step[axis]))?;
             number = number * self.shape[axis] + coordinate;
         }
         Some(number)
@@ -112,20 +154,20 @@ impl Lattice {
     /// The places where not all labels are the same, in order, plane by plane.
     pub(super) fn mixed_places(&self) -> Vec<Vec<MixedPlace>> {
         if self.is_plane {
-            return (0..=self.shape[1]).into_par_iter().map(|y| self.mixed_in_row(y)).collect();
+            return (0..self.place_count(1)).into_par_iter().map(|y| self.mixed_in_row(y)).collect();
         }
-        (0..=self.shape[2]).into_par_iter().map(|z| self.mixed_in_plane(z)).collect()
+        (0..self.place_count(2)).into_par_iter().map(|z| self.mixed_in_plane(z)).collect()
     }
 
     fn mixed_in_plane(&self, z: usize) -> Vec<MixedPlace> {
-        let [width, height, depth] = self.shape;
+        let [width, height, _] = self.shape;
         let row = |y: Option<usize>, z: Option<usize>| {
-            let (y, z) = (y.filter(|y| *y < height)?, z.filter(|z| *z < depth)?);
+            let (y, z) = (self.wrapped(1, y)?, self.wrapped(2, z)?);
             let start = (z * height + y) * width;
             Some(&self.labels[start..start + width])
         };
         let mut found = Vec::new();
-        for y in 0..=height {
+        for y in 0..self.place_count(1) {
             let lower = |at: usize| at.checked_sub(1);
             let rows = [
                 row(lower(y), lower(z)),
@@ -133,9 +175,13 @@ impl Lattice {
                 row(lower(y), Some(z)),
                 row(Some(y), Some(z)),
             ];
-            let mut left = [OUTSIDE; 4];
-            for x in 0..=width {
-                let right = rows.map(|row| row.and_then(|row| row.get(x)).copied().unwrap_or(OUTSIDE));
+            let column = |x: Option<usize>| {
+                let x = self.wrapped(0, x);
+                rows.map(|row| row.zip(x).map_or(OUTSIDE, |(row, x)| row[x]))
+            };
+            let mut left = column(None);
+            for x in 0..self.place_count(0) {
+                let right = column(Some(x));
                 let is_mixed = left != [left[0]; 4] || right != left;
                 if is_mixed {
                     let labels =
@@ -150,7 +196,7 @@ impl Lattice {
     }
 
     fn mixed_in_row(&self, y: usize) -> Vec<MixedPlace> {
-        let places = (0..=self.shape[0]).map(|x| [x, y, 0]);
+        let places = (0..self.place_count(0)).map(|x| [x, y, 0]);
         let mixed = places.filter_map(|place| {
             let around = self.pixels(place);
             if around == [around[0]; 4] {
@@ -211,18 +257,24 @@ impl Lattice {
         Err(NetworkError::VoxelsTouch { places: left })
     }
 
-    fn place_of(&self, voxel: usize) -> Place {
+    pub(super) fn place_of(&self, voxel: usize) -> Place {
         let [width, height, _] = self.shape;
         [voxel % width, voxel / width % height, voxel / width / height]
     }
 
     /// The places from which a change of a voxel can be seen: its own corners, and those an edge further.
     fn places_around(&self, [x, y, z]: Place) -> impl Iterator<Item = Place> {
-        let near = |at: usize, axis: usize| at.saturating_sub(1)..=(at + 2).min(self.shape[axis]);
-        let (xs, ys, zs) = (near(x, 0), near(y, 1), near(z, 2));
-        zs.flat_map(move |z| {
+        let near = |at: usize, axis: usize| {
+            let count = self.shape[axis];
+            if self.periodic[axis] {
+                return (at + count - 1..=at + count + 2).map(|place| place % count).collect();
+            }
+            (at.saturating_sub(1)..=(at + 2).min(count)).collect()
+        };
+        let (xs, ys, zs): (Vec<usize>, Vec<usize>, Vec<usize>) = (near(x, 0), near(y, 1), near(z, 2));
+        zs.into_iter().flat_map(move |z| {
             let xs = xs.clone();
-            ys.clone().flat_map(move |y| xs.clone().map(move |x| [x, y, z]))
+            ys.clone().into_iter().flat_map(move |y| xs.clone().into_iter().map(move |x| [x, y, z]))
         })
     }
 

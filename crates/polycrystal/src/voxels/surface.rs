@@ -2,13 +2,14 @@
 
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
+use voronoi::PeriodicVertex;
 
 use crate::voxels::elements::CutFaces;
 use crate::voxels::labels::Voxels;
 use crate::voxels::lattice::Place;
-use crate::{Side, Surface};
+use crate::voxels::staircase::Kind;
 
-/// Points in units of voxels, and elements between them.
+/// Points of the lattice in units of voxels, and elements between them and their copies.
 pub(super) struct VoxelSurface {
     pub(super) points: Vec<DVec3>,
     /// The place of the staircase that each point belongs to.
@@ -17,9 +18,19 @@ pub(super) struct VoxelSurface {
 }
 
 impl VoxelSurface {
-    /// As any surface, by the sides of each kind of face.
-    pub(super) fn as_surface<'a>(&'a self, sides: &'a [[Side; 2]]) -> Surface<'a> {
-        Surface { points: &self.points, elements: self.cut.elements(), boundary_of: &self.cut.kind_of, sides }
+    /// The elements that are there once on the torus, with their sides as cells have them.
+    pub(super) fn torus_faces(
+        &self,
+        kinds: &[Kind],
+    ) -> impl Iterator<Item = ([voronoi::Side; 2], Vec<PeriodicVertex>)> {
+        let elements = self.cut.elements();
+        // Those of copies follow.
+        let once = (0u32..).zip(&self.cut.kind_of).take_while(|(_, kind)| kind.index() < kinds.len());
+        once.map(move |(element, kind)| {
+            let corners = elements.corners(element);
+            let corners = corners.iter().map(|corner| self.cut.copies.vertex(*corner)).collect();
+            (kinds[kind.index()].cell_sides(), corners)
+        })
     }
 
     /// The points in the unit of the domain: exactly on its walls where they were on those of the lattice.

@@ -11,6 +11,7 @@ use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::Grouped;
 use crate::voxels::bending::Boxes;
+use crate::voxels::copies::across;
 use crate::voxels::graph::Graph;
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volumes::VolumeSearch;
@@ -87,12 +88,13 @@ impl Untangling<'_> {
         let surface = self.search.surface;
         let mut home = None;
         for round in 0.. {
-            let normals = surface.elements.normals(&points);
-            let now = Surface { points: &points, ..surface };
             let Neighbors { adjacency, boundaries, pairs } = neighbors;
-            let crossings = crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries));
+            let crossings = {
+                let now = Surface { points: &self.search.copies.with_copies(&points), ..surface };
+                crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries))
+            };
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = folded_pairs(pairs, &normals, 0.0);
+                let folds = self.folds(&points, pairs);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
             let home = home.get_or_insert_with(|| self.home());
@@ -135,9 +137,11 @@ impl Untangling<'_> {
                             [] => self.graph.beside(point),
                             followed => followed,
                         };
-                        let mean = followed.iter().map(|other| old[*other as usize]).sum::<DVec3>()
-                            / followed.len() as f64;
-                        *place = self.boxes.nearest(point, place.midpoint(mean));
+                        let to = followed
+                            .iter()
+                            .map(|other| across(self.boxes.periods, *place, old[*other as usize]));
+                        let mean = to.sum::<DVec3>() / followed.len() as f64;
+                        *place = self.boxes.nearest(point, *place + 0.5 * mean);
                     },
                 );
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
@@ -152,14 +156,17 @@ impl Untangling<'_> {
     }
 
     fn folds(&self, points: &[DVec3], neighbors: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        folded_pairs(neighbors, &self.search.surface.elements.normals(points), 0.0)
+        let with_copies = self.search.copies.with_copies(points);
+        folded_pairs(neighbors, &self.search.surface.elements.normals(&with_copies), 0.0)
     }
 
     /// The corners of elements, and all points so many edges around them.
     fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
         let mut marked = vec![false; self.graph.count()];
         let corners = pairs.iter().flatten().map(|element| self.search.surface.elements.corners(*element));
-        let mut last: Vec<u32> = corners.flat_map(|corners| corners.to_vec()).collect();
+        let copies = self.search.copies;
+        let mut last: Vec<u32> =
+            corners.flat_map(|corners| corners.to_vec()).map(|corner| copies.original(corner)).collect();
         for ring in 0..=rings {
             last.retain(|point| !std::mem::replace(&mut marked[*point as usize], true));
             if ring < rings {
@@ -172,11 +179,12 @@ impl Untangling<'_> {
 
 /// Where the points of a staircase start: several at one place stand apart, each a part of the way to the middle of its own faces. So no two elements cross.
 pub(super) fn starts<'a>(
-    places: &[DVec3],
+    boxes: &Boxes,
     faces_at: &Grouped<u32>,
     corners: impl Fn(u32) -> &'a [u32] + Sync,
     apart: f64,
 ) -> Vec<DVec3> {
+    let places = &boxes.middles;
     let is_alone = |point: usize| {
         let near = [point.checked_sub(1), Some(point + 1)];
         near.into_iter().flatten().filter_map(|other| places.get(other)).all(|other| *other != places[point])
@@ -190,8 +198,9 @@ pub(super) fn starts<'a>(
         if is_alone(point) {
             return place;
         }
-        let middle = |face: &u32| mean(&mut corners(*face).iter().map(|corner| places[*corner as usize]));
-        place.lerp(mean(&mut faces_at.of(point).iter().map(middle)), apart)
+        let to = |corner: &u32| across(boxes.periods, place, places[*corner as usize]);
+        let middle = |face: &u32| mean(&mut corners(*face).iter().map(to));
+        place + apart * mean(&mut faces_at.of(point).iter().map(middle))
     };
     (0..places.len()).into_par_iter().map(start).collect()
 }

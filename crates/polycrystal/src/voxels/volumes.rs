@@ -7,11 +7,11 @@ use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
-use crate::mesh::id::id;
 use crate::mesh::volume::{ConeSum, boundary_cones};
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::voxels::bending::Boxes;
-use crate::voxels::elements::{CutFaces, at_corners};
+use crate::voxels::copies::Copies;
+use crate::voxels::elements::CutFaces;
 use crate::voxels::tuning::VoxelTuning;
 use crate::{Elements, Side, Surface};
 
@@ -33,8 +33,9 @@ pub(super) struct Wanted<'a> {
 
 /// Elements, and how they meet in points.
 pub(super) struct VolumeSearch<'a> {
-    /// Its points stand for any others.
+    /// Its points stand for any others, which have the same copies.
     pub(super) surface: Surface<'a>,
+    pub(super) copies: &'a Copies,
     at_points: Grouped<u32>,
     wanted: &'a Wanted<'a>,
     tuning: &'a VoxelTuning,
@@ -64,8 +65,8 @@ impl<'a> VolumeSearch<'a> {
     ) -> Self {
         let elements = cut.elements();
         let surface = Surface { points, elements, boundary_of: &cut.kind_of, sides: wanted.sides };
-        let at_points = at_corners(points.len(), elements.len(), |element| elements.corners(id(element)));
-        Self { surface, at_points, wanted, tuning }
+        let at_points = cut.at_points(points.len());
+        Self { surface, copies: &cut.copies, at_points, wanted, tuning }
     }
 
     /// Moves points within their boxes, but for some that stay, until grains have their volumes, and returns the largest error that is left, as a share of a volume.
@@ -106,7 +107,7 @@ impl<'a> VolumeSearch<'a> {
     }
 
     fn missing(&self, points: &[DVec3]) -> Vec<f64> {
-        let cones = boundary_cones(&Surface { points, ..self.surface });
+        let cones = boundary_cones(&Surface { points: &self.copies.with_copies(points), ..self.surface });
         let mut sums = vec![ConeSum::default(); self.wanted.volumes.len()];
         for (sides, cone) in self.surface.sides.iter().zip(&cones) {
             for (side, sign) in sides.iter().zip([1.0, -1.0]) {
@@ -122,14 +123,19 @@ impl<'a> VolumeSearch<'a> {
         // A third of each triangle's area, and half of each segment's length, belongs to each corner.
         let elements = self.surface.elements;
         let share = if let Elements::Segments(_) = elements { 2.0 } else { 6.0 };
-        let normal = |element: u32| elements.normal(points, element) / share;
+        let with_copies = self.copies.with_copies(points);
+        let normal = |element: u32| elements.normal(&with_copies, element) / share;
         let of_point = |point: usize| {
             let mut slopes: Vec<(u32, DVec3)> = Vec::new();
             let mut area = 0.0;
             for element in self.at_points.of(point) {
                 let normal = normal(*element);
-                area += normal.length();
-                for (side, sign) in self.surface.sides_of(*element).into_iter().zip([1.0, -1.0]) {
+                let sides = self.surface.sides_of(*element);
+                // Elements of copies, which alone have the outside first, are there already.
+                if sides[0] != Side::Exterior {
+                    area += normal.length();
+                }
+                for (side, sign) in sides.into_iter().zip([1.0, -1.0]) {
                     let Side::Grain(grain) = side else { continue };
                     match slopes.iter_mut().find(|(known, _)| *known == grain.0) {
                         Some((_, slope)) => *slope += normal * sign,

@@ -73,16 +73,23 @@ impl MapAgreement {
         let points: Vec<DVec3> = file.points.iter().map(|point| *point * file.stretch).collect();
         let surface = Surface { points: &points, ..file.surface() };
         let map = &measured.map;
+        if map.periodic.any() {
+            return Err(MapProblem::Unfit {
+                what: "is taken to repeat, and whole grains are not compared",
+                remedy: "compare a network that was made without --periodic",
+            });
+        }
         let domain = domain_at(name, &surface, map)?;
         let numbers = surface.grains();
         // With settings they are numbers of seeds.
         let map_labels = file.seed_ids.as_ref().filter(|_| file.settings.is_none());
-        let by_label: BTreeMap<u32, GrainId> = match map_labels {
-            Some(labels) => labels.iter().map(|(grain, label)| (*label, *grain)).collect(),
-            None => numbers.into_iter().map(|grain| (grain.0, grain)).collect(),
+        let by_label: BTreeMap<(u32, u32), GrainId> = match map_labels {
+            Some(labels) => numbered_parts(labels.iter().map(|(grain, label)| (*label, *grain))).collect(),
+            None => numbers.into_iter().map(|grain| ((grain.0, 0), grain)).collect(),
         };
+        let labels = measured.labels.iter().map(|label| (*label, ()));
         let grains: Vec<Option<GrainId>> =
-            measured.labels.iter().map(|label| by_label.get(label).copied()).collect();
+            numbered_parts(labels).map(|(label, ())| by_label.get(&label).copied()).collect();
         let sides = Sides { of_grains: &grains };
 
         let mut counts = vec![0; grains.len()];
@@ -137,6 +144,16 @@ impl MapAgreement {
             grains: of_grains,
         })
     }
+}
+
+/// Labels with the number of times that each came before: parts of one label have the same order in a map and in its network.
+fn numbered_parts<T>(labels: impl Iterator<Item = (u32, T)>) -> impl Iterator<Item = ((u32, u32), T)> {
+    let mut seen: BTreeMap<u32, u32> = BTreeMap::new();
+    labels.map(move |(label, of)| {
+        let before = seen.entry(label).or_default();
+        *before += 1;
+        ((label, *before - 1), of)
+    })
 }
 
 /// What the labels of a map are in a network.

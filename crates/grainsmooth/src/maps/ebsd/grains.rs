@@ -1,6 +1,6 @@
 //! From the points of an orientation map to its grains.
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 use texture::{CrystalSymmetry, Orientation, mean_orientation};
 
@@ -205,7 +205,7 @@ fn label_map(grid: &PointGrid, labels: &[i32], options: &MapOptions) -> LabelMap
     let from_top = grid.mirror - (grid.first[1] + grid.step[1] * (grid.rows - 1) as f64);
     let rows = (0..grid.rows).rev();
     let (nx, labels, width, left) = match grid.grid {
-        Grid::Voxels(_) => {
+        Grid::Voxels(..) => {
             let row = |row: usize| labels[row * grid.columns..(row + 1) * grid.columns].iter().copied();
             (grid.columns, rows.flat_map(row).collect(), grid.step[0], 0.5 * grid.step[0])
         }
@@ -218,7 +218,13 @@ fn label_map(grid: &PointGrid, labels: &[i32], options: &MapOptions) -> LabelMap
     let found = DVec3::new(width, grid.step[1], width);
     let spacing = options.spacing().unwrap_or(found);
     let lower = DVec3::new(grid.first[0] - left, from_top - 0.5 * grid.step[1], 0.0);
-    LabelMap { shape: [nx, grid.rows, 1], spacing, origin: lower * (spacing / found), labels }
+    LabelMap {
+        shape: [nx, grid.rows, 1],
+        spacing,
+        origin: lower * (spacing / found),
+        periodic: BVec3::FALSE,
+        labels,
+    }
 }
 
 impl HeadGrid {

@@ -1,5 +1,6 @@
 //! The grid that the points of a map stand on, found from their coordinates alone: headers are often wrong.
 
+use glam::BVec3;
 use rayon::prelude::*;
 
 use super::super::neighbors::{Grid, Hexagons};
@@ -85,7 +86,7 @@ impl PointGrid {
             let hexagons = Hexagons { half_columns: x.count, rows: y.count, is_first_shifted: first_shifted };
             (Grid::Hexagons(hexagons), hexagons.columns())
         } else {
-            (Grid::Voxels([x.count, y.count, 1]), x.count)
+            (Grid::Voxels([x.count, y.count, 1], BVec3::FALSE), x.count)
         };
         let mut all: Vec<Option<u32>> = vec![None; columns * y.count];
         for ((number, point), [column, row]) in (0u32..).zip(points).zip(places) {
@@ -115,7 +116,7 @@ impl PointGrid {
         let part = |row: usize| &self.points[row * self.columns..][columns.clone()];
         let points = rows.clone().flat_map(part).copied().collect();
         let grid = match self.grid {
-            Grid::Voxels(_) => Grid::Voxels([columns.len(), rows.len(), 1]),
+            Grid::Voxels(..) => Grid::Voxels([columns.len(), rows.len(), 1], BVec3::FALSE),
             Grid::Hexagons(hexagons) => Grid::Hexagons(Hexagons {
                 half_columns: (2 * columns.len()).min(hexagons.half_columns - 2 * columns.start),
                 rows: rows.len(),
