@@ -307,7 +307,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--texture random --misorientations angles.csv``"""
 
     voxels: Sequence[Value]
-    """Number of voxels along each axis, for formats that hold voxels; X Y in 2D
+    """Number of voxels along each axis, for formats that hold voxels; X Y in 2D [default with a map: those of the map]
 
     Example of the command line: ``--voxels 64 64 64 -o grains.vti``"""
 
@@ -409,6 +409,21 @@ class MapOptions(TypedDict, total=False):
     Example of the command line: ``grainsmooth smooth map.vti --min-voxels 8``
 
     Default: ``1``"""
+
+    parts: Literal["keep", "split"]
+    """What becomes of a label whose voxels hang together in several parts: one grain of several bodies (`keep`), or a grain
+    for each part (`split`)
+
+    Voxels hang together through their faces. `SeedId` is the label of all parts.
+
+    Example of the command line: ``grainsmooth smooth map.vti --parts split --min-voxels 8``
+
+    Default: ``keep``"""
+
+    periodic: Value
+    """Axes along which the map repeats, such as x,y,z: its last voxels touch the first, and grains stay whole [default: none]
+
+    Example of the command line: ``grainsmooth smooth phase_field.vti --periodic x,y,z``"""
 
     threshold: Value
     """Largest angle in degrees between neighbouring points of one grain [default: 5]

@@ -7,6 +7,7 @@ mod corrupt;
 mod evolver;
 mod grids;
 mod hdf5;
+mod images;
 mod maps;
 #[path = "../common/programs.rs"]
 mod programs;

@@ -39,7 +39,7 @@ pub struct OutputArguments {
     #[arg(long, value_name = "FORMAT", value_parser = grain_formats(), default_value = "vtp", requires = "grains_dir")]
     pub grains_format: OutputFormat,
 
-    /// Number of voxels along each axis, for formats that hold voxels; X Y in 2D
+    /// Number of voxels along each axis, for formats that hold voxels; X Y in 2D [default with a map: those of the map]
     ///
     /// Example: --voxels 64 64 64 -o grains.vti
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]

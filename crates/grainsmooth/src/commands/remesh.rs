@@ -45,6 +45,7 @@ fn remesh(arguments: &RemeshArguments, progress: Progress<'_>) -> Result<String,
     let to_write = ToWrite {
         dimension,
         has_voxels: file.voxels.is_some(),
+        has_map: false,
         has_orientations: given.orientations.is_some(),
         has_cells: false,
         volume: file.volume,

@@ -95,6 +95,7 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     let to_write = ToWrite {
         dimension,
         has_voxels: file.voxels.is_some(),
+        has_map: matches!(given, Given::Map(_)),
         has_orientations,
         has_cells: false,
         volume: file.volume,

@@ -93,6 +93,24 @@ pub enum MapProblem {
         /// Bytes of all.
         expected: u128,
     },
+    /// An image among the slices of a map cannot be used.
+    #[error("{name}: {problem}")]
+    Slice {
+        /// The file's name.
+        name: String,
+        /// What is wrong with it.
+        problem: Box<MapProblem>,
+    },
+    /// The images of a map's slices differ in size.
+    #[error("{name} has {} x {} pixels, the first slice {} x {}; give slices of one size", size[0], size[1], first[0], first[1])]
+    SliceSize {
+        /// The file's name.
+        name: String,
+        /// Its pixels along x and y.
+        size: [usize; 2],
+        /// Those of the first slice.
+        first: [usize; 2],
+    },
     /// The map has no voxels.
     #[error("has no voxels along {axis}; give a map with at least one along each axis")]
     Empty {

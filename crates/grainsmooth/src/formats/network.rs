@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::{self, Write};
+use std::num::NonZeroU32;
 
 use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, Elements, Level, Mesh, Side};
@@ -66,9 +67,17 @@ impl Polycrystal {
         self.grains().texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
     }
 
+    /// As many voxels as are asked for, else those of the map that the grains come from.
     pub(crate) fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
-        let voxels = self.file().voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
-        Ok(LabelGrid::new(self, voxels))
+        let voxels = self.file().voxels.or_else(|| self.voxels_of_map());
+        Ok(LabelGrid::new(self, voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?))
+    }
+
+    /// Number of voxels along each axis of the map that the grains come from.
+    pub(crate) fn voxels_of_map(&self) -> Option<[NonZeroU32; 3]> {
+        let [x, y, z] = self.measurement()?.map.as_ref()?.shape;
+        let count = |count: usize| u32::try_from(count).ok().and_then(NonZeroU32::new);
+        Some([count(x)?, count(y)?, count(z)?])
     }
 
     pub(crate) fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {

@@ -155,13 +155,13 @@ impl OutputFormat {
     /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
     /// of orientations where grains have none; [`Error::CellsOfGrains`] for one of cells where grains are none.
     pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
-        let ToWrite { dimension, has_voxels, has_orientations, has_cells, volume: _ } = *to_write;
+        let ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells, volume: _ } = *to_write;
         let path = || path.to_owned();
         match (self.0.dimension, self.0.content) {
             (Some(only), _) if only != dimension => {
                 Err(Error::FormatDimension { path: path(), dimension: only })
             }
-            (_, Content::Voxels(_)) if !has_voxels => Err(Error::NoVoxels { path: path() }),
+            (_, Content::Voxels(_)) if !has_voxels && !has_map => Err(Error::NoVoxels { path: path() }),
             (_, Content::Elements) if !has_voxels && dimension == Dimension::Two => {
                 Err(Error::NoVoxels { path: path() })
             }
@@ -179,6 +179,8 @@ pub struct ToWrite {
     pub dimension: Dimension,
     /// Whether the number of voxels is given.
     pub has_voxels: bool,
+    /// Whether grains come from a map, whose voxels are taken where their number is not given.
+    pub has_map: bool,
     /// Whether grains have orientations.
     pub has_orientations: bool,
     /// Whether each grain is a convex cell.
@@ -193,6 +195,7 @@ impl Config {
         ToWrite {
             dimension: self.dimension,
             has_voxels: self.file.voxels.is_some(),
+            has_map: false,
             has_orientations: self.has_texture(),
             has_cells: !self.has_grains_of_several_cells(),
             volume: self.file.volume,

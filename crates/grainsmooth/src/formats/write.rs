@@ -18,6 +18,7 @@ impl Polycrystal {
         ToWrite {
             dimension: self.dimension(),
             has_voxels: self.file().voxels.is_some(),
+            has_map: self.voxels_of_map().is_some(),
             has_orientations: self.grains().texture.is_some(),
             has_cells: self.synthesis().is_some_and(|made| !made.config.has_grains_of_several_cells()),
             volume: self.file().volume,

@@ -10,7 +10,7 @@ use super::label_map::{FileMap, LabelMap, MapContent, MeasuredMap};
 use super::options::{LabelParts, MapOptions};
 use super::orientation_map::{Fault, PointList, ang, ctf};
 use super::stored_numbers::Source;
-use super::{hdf5, mhd, npy, npz, nrrd, raw, tesr, vti};
+use super::{hdf5, mhd, npy, npz, nrrd, png, raw, slices, tesr, tiff, vti};
 use crate::Error;
 use crate::error::map_file::MapProblem;
 
@@ -30,7 +30,7 @@ enum Content {
 }
 
 /// Every format, a line for each extension.
-const FORMATS: [MapFormat; 14] = [
+const FORMATS: [MapFormat; 17] = [
     MapFormat { extension: "vti", content: Content::Labels(vti::read) },
     MapFormat { extension: "npy", content: Content::Labels(npy::read) },
     MapFormat { extension: "npz", content: Content::Labels(npz::read) },
@@ -43,6 +43,9 @@ const FORMATS: [MapFormat; 14] = [
     MapFormat { extension: "h5", content: Content::Either(hdf5::read) },
     MapFormat { extension: "h5oina", content: Content::Either(hdf5::read) },
     MapFormat { extension: "raw", content: Content::Labels(raw::read) },
+    MapFormat { extension: "tif", content: Content::Labels(tiff::read) },
+    MapFormat { extension: "tiff", content: Content::Labels(tiff::read) },
+    MapFormat { extension: "png", content: Content::Labels(png::read) },
     MapFormat { extension: "ang", content: Content::Orientations(ang::read) },
     MapFormat { extension: "ctf", content: Content::Orientations(ctf::read) },
 ];
@@ -56,16 +59,16 @@ pub fn read_map(path: &Path, options: &MapOptions) -> Result<MeasuredMap, Error>
 }
 
 fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
+    if path.is_dir() {
+        check_told("", options)?;
+        check_of_labels(options)?;
+        return labelled(slices::read(path, options)?, options);
+    }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let format = FORMATS.iter().find(|format| extension == format.extension);
     let MapFormat { extension, content } =
         format.ok_or_else(|| MapProblem::UnknownExtension { known: known_extensions() })?;
-    if *extension != "raw" && (options.shape.is_some() || options.number_type.is_some()) {
-        return Err(MapProblem::Told { what: "shape and type", option: "--shape and --type" });
-    }
-    if !matches!(*extension, "npy" | "npz") && options.axes.is_some() {
-        return Err(MapProblem::Told { what: "order of axes", option: "--axes" });
-    }
+    check_told(extension, options)?;
     let bytes = || fs::read(path).map_err(MapProblem::Unreadable);
     match content {
         Content::Labels(read) => {
@@ -89,6 +92,17 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
             }
         },
     }
+}
+
+/// Checks that no option says what files with an extension tell themselves.
+fn check_told(extension: &str, options: &MapOptions) -> Result<(), MapProblem> {
+    if extension != "raw" && (options.shape.is_some() || options.number_type.is_some()) {
+        return Err(MapProblem::Told { what: "shape and type", option: "--shape and --type" });
+    }
+    if !matches!(extension, "npy" | "npz") && options.axes.is_some() {
+        return Err(MapProblem::Told { what: "order of axes", option: "--axes" });
+    }
+    Ok(())
 }
 
 /// What is wrong with a point of a file that has no lines.

@@ -16,6 +16,11 @@ pub(super) const IN_SEVERAL_FILES: MapProblem =
 pub(super) const TURNED_AXES: MapProblem =
     MapProblem::Unfit { what: "its axes are turned", remedy: "sample the map again along x, y and z" };
 
+pub(super) const COLORS: MapProblem = MapProblem::Unfit {
+    what: "its pixels are colours, or have fewer than 8 bits",
+    remedy: "save the labels of grains as shades of grey of 8, 16 or 32 bits",
+};
+
 /// A map's file as it is read.
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
