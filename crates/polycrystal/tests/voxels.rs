@@ -374,11 +374,11 @@ fn repeating(seeds: &[[f64; 3]], shape: [usize; 3], axes: BVec3, shift: [usize; 
             let straight = (place - DVec3::from_array(*seed) * size).abs();
             DVec3::select(axes, straight.min(size - straight), straight).length_squared()
         };
-        (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).unwrap()
+        (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).expect("seeds")
     };
     let mut known = std::collections::BTreeMap::new();
     for index in 0..shape.iter().product() {
-        let count = u32::try_from(known.len()).unwrap();
+        let count = u32::try_from(known.len()).expect("few grains");
         let [width, height, _] = shape;
         known
             .entry(nearest([index % width, index / width % height, index / width / height]))
