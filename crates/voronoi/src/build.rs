@@ -7,6 +7,7 @@ mod periodic_merge;
 mod planar_cells;
 mod planar_merge;
 mod planar_squares;
+pub(crate) mod stream;
 mod tile;
 mod tile_vertex;
 mod vertex_numbers;
@@ -54,15 +55,11 @@ impl Tessellation {
     /// # Panics
     /// When there are not as many weights as seeds.
     pub fn power(domain: &Domain, seeds: &[DVec3], weights: &[f64]) -> Result<Self, VoronoiError> {
-        assert_eq!(seeds.len(), weights.len(), "one weight for each seed");
-        if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
-            return Err(VoronoiError::BadWeight { seed, weight: *weight });
-        }
         Self::cut(domain, seeds, Some(weights))
     }
 
     fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
-        check_seeds(domain, seeds)?;
+        check(domain, seeds, weights)?;
         let is_plain = weights.is_none() && !domain.is_periodic() && domain.is_box();
         if is_plain
             && domain.dimension() == Dimension::Two
@@ -80,7 +77,17 @@ impl Tessellation {
     }
 }
 
-fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
+/// Whether seeds have cells.
+///
+/// # Panics
+/// When there are weights, but not as many as seeds.
+fn check(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<(), VoronoiError> {
+    if let Some(weights) = weights {
+        assert_eq!(seeds.len(), weights.len(), "one weight for each seed");
+        if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
+            return Err(VoronoiError::BadWeight { seed, weight: *weight });
+        }
+    }
     if seeds.is_empty() {
         return Err(VoronoiError::NoSeeds);
     }

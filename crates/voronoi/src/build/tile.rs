@@ -15,7 +15,7 @@ use crate::clip::convex_cell::ConvexCell;
 use crate::clip::convex_polygon::ConvexPolygon;
 use crate::clip::edge_tracing::{EdgeTracing, NewVertex};
 use crate::diagram::cell_sum::CellSum;
-use crate::diagram::polygon::Polygon;
+use crate::diagram::polygon::{FaceMeasure, Polygon};
 use crate::exact::generator::{Generator, PLANE, VertexKey};
 use crate::exact::half_space::HalfSpace;
 use crate::sites::search::{ImagesMissing, Search};
@@ -57,18 +57,36 @@ pub(crate) struct SharedVertex {
 /// # Errors
 /// [`VoronoiError::TooManySeeds`] as in [`Search::widen`].
 pub(crate) fn cut_tiles(search: &mut Search) -> Result<Vec<Tile>, VoronoiError> {
-    let mut tiles: Vec<Option<Tile>> = search.tiles().iter().map(|_| None).collect();
+    for_each_tile(search, |builder| std::mem::take(&mut builder.tile))
+}
+
+/// Cuts all cells in parallel, and takes of each tile what is wanted of it, in order. All faces of its cells are the tile's own.
+///
+/// # Errors
+/// As of [`cut_tiles`].
+pub(crate) fn map_whole_cells<T: Send>(
+    search: &mut Search,
+    take: impl Fn(&mut Tile) -> T + Sync,
+) -> Result<Vec<T>, VoronoiError> {
+    for_each_tile(search, |builder| {
+        builder.tile.push_faces_of_others(builder.search, &mut builder.vertices);
+        take(&mut builder.tile)
+    })
+}
+
+fn for_each_tile<T: Send>(
+    search: &mut Search,
+    take: impl Fn(&mut Builder<'_>) -> T + Sync,
+) -> Result<Vec<T>, VoronoiError> {
+    let mut taken: Vec<Option<T>> = search.tiles().iter().map(|_| None).collect();
     loop {
-        let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
+        let missing = taken.par_iter_mut().zip(search.tiles()).filter(|(taken, _)| taken.is_none());
         missing.for_each_init(
             || Builder::new(search),
-            |builder, (tile, seeds)| {
-                let cut = builder.cut(seeds.clone());
-                *tile = cut.ok().map(|()| std::mem::take(&mut builder.tile));
-            },
+            |builder, (taken, seeds)| *taken = builder.cut(seeds.clone()).ok().map(|()| take(builder)),
         );
-        if tiles.iter().all(Option::is_some) {
-            return Ok(tiles.into_iter().flatten().collect());
+        if taken.iter().all(Option::is_some) {
+            return Ok(taken.into_iter().flatten().collect());
         }
         search.widen()?;
     }
@@ -333,7 +351,7 @@ impl Tile {
             };
             let is_plane = beyond == Generator::side(PLANE);
             match (is_flat, is_plane) {
-                (false, _) => self.push_ring(search, vertices, number, own, beyond),
+                (false, _) => self.push_own_face(search, vertices, number, own, beyond),
                 (true, true) => self.push_polygon(search, vertices, number, own),
                 (true, false) => {}
             }
@@ -347,8 +365,34 @@ impl Tile {
         if is_first(a, b) { Some([a, b]) } else { is_first(b, a).then_some([b, a]) }
     }
 
-    /// Adds a face of a cell in space.
-    fn push_ring(
+    /// In space, adds the faces of the tile's cells that are other tiles', or the same as others but for periods, each as the tile's cell sees it.
+    fn push_faces_of_others(&mut self, search: &Search, vertices: &mut [TileVertex]) {
+        let shared: Vec<u32> = self.shared.iter().map(|shared| shared.vertex).collect();
+        shared.iter().for_each(|number| vertices[*number as usize].done_faces = 0);
+        for number in shared {
+            for [i, j] in FACE_SLOTS {
+                let vertex = &mut vertices[number as usize];
+                if vertex.is_done(i, j) {
+                    continue;
+                }
+                vertex.mark_done(i, j);
+                let [a, b] = [vertex.generators[i], vertex.generators[j]];
+                let sides = if self.seeds.contains(&a.0) { [a, b] } else { [b, a] };
+                if !self.seeds.contains(&sides[0].0) || self.in_order(search, sides).is_some() {
+                    continue;
+                }
+                let [own, beyond] = sides;
+                let (face, _) = self.push_ring(search, vertices, number, own, beyond);
+                let beyond = beyond.as_site().expect("what lies beyond walls comes after all seeds");
+                if !self.seeds.contains(&search.input().image(beyond).seed) {
+                    self.sums[(own.0 - self.seeds.start) as usize].add_face(&face, DVec3::ZERO, 1.0);
+                }
+            }
+        }
+    }
+
+    /// Adds a face that the tile owns, in space, and what it adds to cells.
+    fn push_own_face(
         &mut self,
         search: &Search,
         vertices: &mut [TileVertex],
@@ -356,6 +400,31 @@ impl Tile {
         own: Generator,
         beyond: Generator,
     ) {
+        let (face, normal) = self.push_ring(search, vertices, first, own, beyond);
+        self.sums[(own.0 - self.seeds.start) as usize].add_face(&face, DVec3::ZERO, 1.0);
+        if let Some(site) = beyond.as_site() {
+            let seed = search.input().image(site).seed;
+            match self.sums.get_mut(seed.wrapping_sub(self.seeds.start) as usize) {
+                Some(sum) => sum.add_face(&face, normal, -1.0),
+                None => {
+                    let mut sum = CellSum::default();
+                    sum.add_face(&face, normal, -1.0);
+                    self.sums_beyond.push((seed, sum));
+                }
+            }
+        }
+    }
+
+    /// Adds a face of a cell in space, and returns its measure and a normal: between two sites, the way from one to the other.
+    #[inline]
+    fn push_ring(
+        &mut self,
+        search: &Search,
+        vertices: &mut [TileVertex],
+        first: u32,
+        own: Generator,
+        beyond: Generator,
+    ) -> (FaceMeasure, DVec3) {
         let input = search.input();
         let seed = input.seeds[own.0 as usize];
         let place =
@@ -370,19 +439,7 @@ impl Tile {
             polygon.go_to(place(vertex));
         });
         let corner_count = self.finish_face([own, beyond]);
-        let face = polygon.measure(corner_count);
-        self.sums[(own.0 - self.seeds.start) as usize].add_face(&face, DVec3::ZERO, 1.0);
-        if let Some(site) = beyond.as_site() {
-            let seed = input.image(site).seed;
-            match self.sums.get_mut(seed.wrapping_sub(self.seeds.start) as usize) {
-                Some(sum) => sum.add_face(&face, normal, -1.0),
-                None => {
-                    let mut sum = CellSum::default();
-                    sum.add_face(&face, normal, -1.0);
-                    self.sums_beyond.push((seed, sum));
-                }
-            }
-        }
+        (polygon.measure(corner_count), normal)
     }
 
     /// Adds the edges of a cell in the plane.

@@ -92,6 +92,11 @@ impl TileVertex {
     }
 
     #[inline]
+    pub(crate) fn is_done(&self, i: usize, j: usize) -> bool {
+        self.done_faces & FACE_BIT[i][j] != 0
+    }
+
+    #[inline]
     pub(crate) fn mark_done(&mut self, i: usize, j: usize) {
         self.done_faces |= FACE_BIT[i][j];
     }

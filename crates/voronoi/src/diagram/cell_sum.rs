@@ -58,6 +58,11 @@ impl CellSum {
         self.corner_count += other.corner_count;
     }
 
+    /// Takes other numbers of faces and of their corners: those that are left where vertices coincide.
+    pub(crate) fn set_counts(&mut self, faces: u32, corners: u32) {
+        (self.face_count, self.corner_count) = (faces, corners);
+    }
+
     pub(crate) fn face_count(&self) -> u32 {
         self.face_count
     }

@@ -9,6 +9,11 @@ pub(crate) enum FaceEnd {
 }
 
 impl FaceEnd {
+    /// A cell in its own place.
+    pub(crate) fn cell(seed: u32) -> Self {
+        Self::Cell(Image { seed, translation: Translation::ZERO })
+    }
+
     pub(crate) fn moved(self, translation: Translation) -> Self {
         match self {
             Self::Cell(image) => Self::Cell(Image { translation: image.translation + translation, ..image }),

@@ -100,6 +100,11 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
+    /// Gives back the memory that only the search needs; names of what cells touch stay.
+    pub(crate) fn forget_sites(&mut self) {
+        self.layers.iter_mut().for_each(|layer| layer.sites = SiteTree::default());
+    }
+
     /// The domain that is divided up.
     pub(crate) fn domain(&self) -> &'a Domain {
         self.domain

@@ -24,12 +24,34 @@ pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
 pub fn assert_complex(tessellation: &Tessellation) {
     assert_vertices_differ(tessellation, None);
     assert_fills_domain(tessellation);
+    assert_streams_alike(tessellation, None);
 }
 
 /// The same for power cells.
 pub fn assert_power_complex(tessellation: &Tessellation, weights: &[f64]) {
     assert_vertices_differ(tessellation, Some(weights));
     assert_fills_domain(tessellation);
+    assert_streams_alike(tessellation, Some(weights));
+}
+
+/// Cells that come one after another have the same neighbours, counts and sizes.
+fn assert_streams_alike(tessellation: &Tessellation, weights: Option<&[f64]>) {
+    let domain = tessellation.domain();
+    let cells = Tessellation::stream(domain, tessellation.seeds(), weights).expect("valid seeds");
+    assert_eq!(cells.len(), tessellation.cell_count());
+    for (cell, whole) in cells.zip(tessellation.cell_measures()) {
+        let id = cell.cell;
+        assert_eq!(cell.neighbors, tessellation.neighbors(id), "neighbours of {id:?}");
+        let counts = |measure: &CellMeasure| (measure.face_count, measure.edge_count, measure.vertex_count);
+        assert_eq!(counts(&cell.measure), counts(&whole), "{id:?}");
+        let difference = (cell.measure.volume - whole.volume).abs();
+        assert!(difference <= 1e-13 * domain.measure(), "volume of {id:?}: {cell:?} {whole:?}");
+        assert!((cell.measure.area - whole.area).abs() <= 1e-12 * (1.0 + whole.area), "{cell:?} {whole:?}");
+        if whole.volume > 1e-6 * domain.measure() {
+            let offset = cell.measure.centroid.distance(whole.centroid);
+            assert!(offset <= 1e-9 * domain.size().max_element(), "{cell:?} {whole:?}");
+        }
+    }
 }
 
 fn assert_fills_domain(tessellation: &Tessellation) {

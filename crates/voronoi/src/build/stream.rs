@@ -1,0 +1,243 @@
+//! Cells one after another, without the complex that they make up.
+//!
+//! A cell is known once its tile is cut: of each tile only the sums over the faces of its cells and the lists of their neighbours
+//! are kept, a fifth of what the vertices and faces of a complex take.
+
+use std::collections::HashMap;
+
+use foldhash::fast::FixedState;
+use glam::DVec3;
+
+use crate::build::check;
+use crate::build::tile::{Tile, map_whole_cells};
+use crate::diagram::cell_sum::CellSum;
+use crate::diagram::united_vertices::UnitedVertices;
+use crate::exact::face_end::FaceEnd;
+use crate::exact::generator::Generator;
+use crate::sites::search::Search;
+use crate::{
+    CellId, CellMeasure, Dimension, Domain, PeriodicVertex, Side, Tessellation, Translation, VoronoiError,
+};
+
+/// A cell by itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StreamedCell {
+    /// The number of its seed.
+    pub cell: CellId,
+    /// Size and counts; nothing but the seed for an empty cell.
+    pub measure: CellMeasure,
+    /// As of [`Tessellation::neighbors`].
+    pub neighbors: Vec<Side>,
+}
+
+/// The cells of all seeds, one after another: see [`Tessellation::stream`].
+pub struct CellStream<'a> {
+    cells: Cells<'a>,
+    next: u32,
+}
+
+#[expect(clippy::large_enum_variant, reason = "there is one")]
+enum Cells<'a> {
+    /// In space.
+    Tiles(TiledCells<'a>),
+    /// In the plane.
+    Whole(Tessellation, Vec<CellMeasure>),
+}
+
+impl Tessellation {
+    /// The cells of seeds one after another, in the order of the seeds, where their complex is not needed or too large: in space they take about 200 bytes each, seeds included, a
+    /// fifth of what a tessellation takes. With weights, the cells are those of [`Self::power`].
+    ///
+    /// All cells are cut, in parallel, before the first one comes. In the plane their complex is made.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+    /// let domain = Domain::unit_cube();
+    /// for cell in Tessellation::stream(&domain, &seeds, None)? {
+    ///     assert!((cell.measure.volume - 0.5).abs() < 1e-15);
+    ///     assert_eq!(cell.neighbors.len(), 6, "the other cell and five walls");
+    /// }
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`Self::new`] and [`Self::power`].
+    ///
+    /// # Panics
+    /// When there are weights, but not as many as seeds.
+    pub fn stream<'a>(
+        domain: &'a Domain,
+        seeds: &'a [DVec3],
+        weights: Option<&[f64]>,
+    ) -> Result<CellStream<'a>, VoronoiError> {
+        let cells = match domain.dimension() {
+            Dimension::Two => {
+                let tessellation = match weights {
+                    Some(weights) => Self::power(domain, seeds, weights)?,
+                    None => Self::new(domain, seeds)?,
+                };
+                let measures = tessellation.cell_measures();
+                Cells::Whole(tessellation, measures)
+            }
+            Dimension::Three => {
+                check(domain, seeds, weights)?;
+                Cells::Tiles(TiledCells::new(Search::new(domain, seeds, weights)?, seeds)?)
+            }
+        };
+        Ok(CellStream { cells, next: 0 })
+    }
+}
+
+impl Iterator for CellStream<'_> {
+    type Item = StreamedCell;
+
+    fn next(&mut self) -> Option<StreamedCell> {
+        let cell = CellId(self.next);
+        (cell.index() < self.cell_count()).then(|| {
+            self.next += 1;
+            match &self.cells {
+                Cells::Tiles(cells) => cells.cell(cell),
+                Cells::Whole(tessellation, measures) => StreamedCell {
+                    cell,
+                    measure: measures[cell.index()],
+                    neighbors: tessellation.neighbors(cell),
+                },
+            }
+        })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.cell_count() - self.next as usize;
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for CellStream<'_> {}
+
+impl CellStream<'_> {
+    fn cell_count(&self) -> usize {
+        match &self.cells {
+            Cells::Tiles(cells) => cells.seeds.len(),
+            Cells::Whole(tessellation, _) => tessellation.cell_count(),
+        }
+    }
+}
+
+/// The cells of tiles, in space.
+struct TiledCells<'a> {
+    search: Search<'a>,
+    seeds: &'a [DVec3],
+    /// Of each seed, its index in the order of the tiles.
+    indices: Vec<u32>,
+    tiles: Vec<TileCells>,
+    /// Of each cell without volume that symbolically has a thickness, by the number of its seed, what its two faces touch.
+    flat: HashMap<u32, [FaceEnd; 2], FixedState>,
+}
+
+/// What is kept of the cells of a tile.
+struct TileCells {
+    first_seed: u32,
+    sums: Vec<CellSum>,
+    /// What lies beyond the faces of the tile's cell c is `beyond[starts[c]..starts[c + 1]]`.
+    starts: Vec<u32>,
+    beyond: Vec<Generator>,
+}
+
+impl<'a> TiledCells<'a> {
+    fn new(mut search: Search<'a>, seeds: &'a [DVec3]) -> Result<Self, VoronoiError> {
+        let tiles = map_whole_cells(&mut search, TileCells::new)?;
+        let mut flat = HashMap::default();
+        for tile in &tiles {
+            for (seed, starts) in (tile.first_seed..).zip(tile.starts.windows(2)) {
+                if let &[a, b] = &tile.beyond[starts[0] as usize..starts[1] as usize] {
+                    flat.insert(search.ids()[seed as usize], [a, b].map(|generator| search.end(generator)));
+                }
+            }
+        }
+        let indices = search.indices();
+        search.forget_sites();
+        Ok(Self { search, seeds, indices, tiles, flat })
+    }
+
+    fn cell(&self, cell: CellId) -> StreamedCell {
+        let index = self.indices[cell.index()];
+        let tile = &self.tiles[self.tiles.partition_point(|tile| tile.first_seed <= index) - 1];
+        let place = (index - tile.first_seed) as usize;
+        let seed = self.seeds[cell.index()];
+        if self.flat.contains_key(&cell.0) {
+            return StreamedCell { cell, measure: CellSum::default().measure(seed), neighbors: Vec::new() };
+        }
+        let beyond = &tile.beyond[tile.starts[place] as usize..tile.starts[place + 1] as usize];
+        let own = FaceEnd::cell(cell.0);
+        let touched = |generator: &Generator| {
+            Side::of(self.behind_flat_cells(own, self.search.end(*generator)), Translation::ZERO)
+        };
+        let mut neighbors: Vec<Side> = beyond.iter().map(touched).collect();
+        neighbors.sort_unstable();
+        StreamedCell { cell, measure: tile.sums[place].measure(seed), neighbors }
+    }
+
+    /// What a cell touches where it meets some end of a face: behind a cell without volume, what lies on the other side of that.
+    fn behind_flat_cells(&self, mut from: FaceEnd, mut to: FaceEnd) -> FaceEnd {
+        while let FaceEnd::Cell(image) = to
+            && let Some(ends) = self.flat.get(&image.seed)
+        {
+            let [a, b] = ends.map(|end| end.moved(image.translation));
+            (from, to) = (to, if a == from { b } else { a });
+        }
+        to
+    }
+}
+
+impl TileCells {
+    fn new(tile: &mut Tile) -> Self {
+        if !tile.coincident.is_empty() {
+            let mut vertices = UnitedVertices::new(tile.positions.len());
+            for [v, w] in tile
+                .coincident
+                .iter()
+                .map(|pair| pair.map(|vertex| PeriodicVertex { vertex, translation: Translation::ZERO }))
+            {
+                vertices.unite(v, w);
+            }
+            let roots = vertices.roots();
+            tile.drop_repeated_corners(
+                |corner| roots[corner as usize].vertex,
+                Dimension::Three.fewest_corners(),
+            );
+        }
+        let first_seed = tile.seeds.start;
+        let count = tile.seeds.len();
+        // Of a face, the tile's cells that it is a face of, and what lies beyond.
+        let of_cells = |[own, beyond]: [Generator; 2]| {
+            let other = tile.seeds.contains(&beyond.0).then_some((beyond, own));
+            let sides = [Some((own, beyond)), other];
+            sides.into_iter().flatten().map(|(own, beyond)| ((own.0 - first_seed) as usize, beyond))
+        };
+        let mut starts = vec![0; count + 1];
+        let mut corner_counts = vec![0; count];
+        for (sides, corners) in tile.faces.iter().zip(tile.corner_starts.windows(2)) {
+            for (cell, _) in of_cells(*sides) {
+                starts[cell + 1] += 1;
+                corner_counts[cell] += corners[1] - corners[0];
+            }
+        }
+        let mut sums = tile.sums.clone();
+        for (cell, sum) in sums.iter_mut().enumerate() {
+            sum.set_counts(starts[cell + 1], corner_counts[cell]);
+            starts[cell + 1] += starts[cell];
+        }
+        let mut beyond = vec![Generator::NONE; starts[count] as usize];
+        let mut ends = starts.clone();
+        for sides in &tile.faces {
+            for (cell, generator) in of_cells(*sides) {
+                beyond[ends[cell] as usize] = generator;
+                ends[cell] += 1;
+            }
+        }
+        Self { first_seed, sums, starts, beyond }
+    }
+}
