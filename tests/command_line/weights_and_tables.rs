@@ -176,3 +176,35 @@ fn no_mesh_has_no_output() {
     let workplace = Workplace::new();
     workplace.command("--no-mesh -o grains.vtp").assert().code(USAGE).stdout("");
 }
+
+/// Without a mesh, cells of seeds that are used as they are come without their complex.
+#[test]
+fn tables_of_cells_are_the_same_with_and_without_a_mesh() {
+    let workplace = Workplace::new();
+    workplace.put("radii.csv", "x,y,z,radius\n0.2,0.3,0.4,0.1\n0.8,0.3,0.5,0.2\n0.5,0.8,0.9,0.05\n");
+    for seeds in ["--seeds 60 --seeding random --periodic x,y", "--lattice bcc 2", "--seeds-file radii.csv"] {
+        workplace.run(&format!("{seeds} --relax 0 -n 0 --cells-json whole.json -o whole.vtp"));
+        workplace.run(&format!("{seeds} --no-mesh --cells-json alone.json --cells-csv alone.csv"));
+        let [whole, alone] = ["whole.json", "alone.json"].map(|name| table(&workplace, name));
+        assert_eq!(whole.len(), alone.len(), "{seeds}");
+        for (whole, alone) in whole.iter().zip(&alone) {
+            for (name, value) in whole.as_object().unwrap() {
+                match (value.as_f64(), alone[name].as_f64()) {
+                    (Some(whole), Some(alone)) => {
+                        assert!((whole - alone).abs() <= 1e-12 * whole.abs().max(1e-3), "{seeds}: {name}");
+                    }
+                    _ if name == "centroid" => {}
+                    _ => assert_eq!(*value, alone[name], "{seeds}: {name}"),
+                }
+            }
+        }
+        let csv = String::from_utf8(workplace.bytes("alone.csv")).unwrap();
+        assert_eq!(csv.lines().count(), alone.len() + 1, "{seeds}");
+    }
+    workplace.put("seeds.csv", OUTWEIGHED);
+    workplace.refuses(
+        "--seeds-file seeds.csv --no-mesh",
+        FAILED,
+        "weights leave grain 1 without volume; change their radii, or drop them with --drop-empty",
+    );
+}

@@ -42,6 +42,9 @@ const SEGMENTS_OF_ARC: u128 = 60;
 /// Bytes that cells without a network take for each seed: a million random ones took 1.46 GB.
 const BYTES_PER_CELL: u128 = 1600;
 
+/// The same for cells that are listed without their complex: ten million random ones took 2.5 GB.
+const BYTES_PER_LISTED_CELL: u128 = 270;
+
 /// Voxels that are labelled at the same time: few enough for little memory (32 MB), and many enough for all threads.
 pub(crate) const SLAB_VOXELS: usize = 1 << 22;
 
@@ -235,7 +238,19 @@ pub fn check_levels(
 /// # Errors
 /// [`MemoryError::CellsExceedMemory`].
 pub fn check_cells(count: usize, available: u64) -> Result<(), MemoryError> {
-    let needed = (count as u128).saturating_mul(BYTES_PER_CELL);
+    check_cells_of(BYTES_PER_CELL, count, available)
+}
+
+/// The same for cells that are listed without their complex.
+///
+/// # Errors
+/// [`MemoryError::CellsExceedMemory`].
+pub fn check_listed_cells(count: usize, available: u64) -> Result<(), MemoryError> {
+    check_cells_of(BYTES_PER_LISTED_CELL, count, available)
+}
+
+fn check_cells_of(bytes: u128, count: usize, available: u64) -> Result<(), MemoryError> {
+    let needed = (count as u128).saturating_mul(bytes);
     if needed <= u128::from(available) {
         return Ok(());
     }

@@ -3,6 +3,7 @@
 pub(crate) mod elements_reached;
 pub(crate) mod failing;
 pub(crate) mod given;
+pub(crate) mod listed;
 pub(crate) mod measured;
 pub(crate) mod misorientations;
 pub(crate) mod origin;

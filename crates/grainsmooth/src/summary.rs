@@ -12,14 +12,14 @@ use polycrystal::{
     AngleStatistics, Balance, Boundary, Collapsed, HerringResidual, Reconnections, Relaxation, Vanished,
     Volumes, measure_network,
 };
-use voronoi::Dimension;
+use voronoi::{Dimension, Domain};
 
 use crate::figures::counted::Counted;
 use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
-    SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
+    Config, EquivalentDiameters, ListedCells, Polycrystal, Reconnected, Regularization, SeedSource,
+    ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 use measured::{write_crystals, write_map};
 
@@ -221,12 +221,8 @@ pub struct CellsSummary<'a>(pub &'a Config, pub &'a Tessellated);
 impl fmt::Display for CellsSummary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(config, cells) = self;
-        let tessellation = &cells.tessellation;
-        writeln!(out, "cells       {} in {}", tessellation.cell_count(), tessellation.domain())?;
-        let measures = tessellation.cell_measures();
-        let diameters: Vec<f64> =
-            measures.iter().map(|cell| config.dimension.ball_diameter(cell.volume)).collect();
-        writeln!(out, "diameters   {}", EquivalentDiameters::new(config.dimension, &diameters))?;
+        let measures = cells.tessellation.cell_measures();
+        write_cells(out, cells.tessellation.domain(), measures.iter().map(|cell| cell.volume))?;
         if let Some(stretched) = StretchLine::new(config) {
             writeln!(out, "{stretched}")?;
         }
@@ -239,6 +235,54 @@ impl fmt::Display for CellsSummary<'_> {
         }
         write_inside(out, cells)?;
         write_texture(out, cells)
+    }
+}
+
+/// Cells without their complex in a few lines of text.
+pub struct ListedSummary<'a>(pub &'a Config, pub &'a ListedCells);
+
+impl fmt::Display for ListedSummary<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(config, ListedCells { domain, cells, passed_over, .. }) = self;
+        write_cells(out, domain, cells.iter().map(|cell| cell.measure.volume))?;
+        write_lattice(out, config, domain, cells.len())?;
+        write_passed_over(out, config, *passed_over)
+    }
+}
+
+/// How many cells there are, and their sizes.
+fn write_cells(
+    out: &mut fmt::Formatter<'_>,
+    domain: &Domain,
+    volumes: impl ExactSizeIterator<Item = f64>,
+) -> fmt::Result {
+    writeln!(out, "cells       {} in {domain}", volumes.len())?;
+    let dimension = domain.dimension();
+    let diameters: Vec<f64> = volumes.map(|volume| dimension.ball_diameter(volume)).collect();
+    writeln!(out, "diameters   {}", EquivalentDiameters::new(dimension, &diameters))
+}
+
+/// The lattice that the seeds stand on.
+fn write_lattice(
+    out: &mut fmt::Formatter<'_>,
+    config: &Config,
+    domain: &Domain,
+    seed_count: usize,
+) -> fmt::Result {
+    config.lattice_report(domain, seed_count).map_or(Ok(()), |lattice| writeln!(out, "lattice     {lattice}"))
+}
+
+/// What of the file of the seeds has no place.
+fn write_passed_over(
+    out: &mut fmt::Formatter<'_>,
+    config: &Config,
+    passed_over: Option<&str>,
+) -> fmt::Result {
+    match (passed_over, &config.seeds) {
+        (Some(passed_over), SeedSource::File(path)) => {
+            writeln!(out, "passed over {passed_over} in {}", path.display())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -301,14 +345,9 @@ fn write_phases(
 
 /// What became of the seeds: a lattice, and those that are left out.
 fn write_seeds(out: &mut fmt::Formatter<'_>, config: &Config, cells: &Tessellated) -> fmt::Result {
-    let tessellation = &cells.tessellation;
     let seeds = cells.grain_count() + cells.dropped_seeds.len() + cells.merged_seeds.len();
-    if let Some(lattice) = config.lattice_report(tessellation.domain(), seeds) {
-        writeln!(out, "lattice     {lattice}")?;
-    }
-    if let (Some(passed_over), SeedSource::File(path)) = (cells.passed_over, &config.seeds) {
-        writeln!(out, "passed over {passed_over} in {}", path.display())?;
-    }
+    write_lattice(out, config, cells.tessellation.domain(), seeds)?;
+    write_passed_over(out, config, cells.passed_over)?;
     if !cells.dropped_seeds.is_empty() {
         writeln!(out, "dropped     {} that others outweigh", Seeds(&cells.dropped_seeds))?;
     }

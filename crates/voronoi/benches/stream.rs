@@ -28,6 +28,7 @@ fn main() {
         let start = Instant::now();
         let cells = Tessellation::stream(&Domain::unit_cube(), &seeds, None).map(|cells| {
             cells
+                .iter()
                 .map(|cell| (cell.measure.volume, cell.neighbors.len()))
                 .fold((0.0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
         });

@@ -46,7 +46,7 @@ mod resolution;
 mod sites;
 pub mod volumes;
 
-pub use build::stream::{CellStream, StreamedCell};
+pub use build::stream::{CellStream, SingleCell};
 pub use diagram::cell_sum::CellMeasure;
 pub use diagram::edges::Edges;
 pub use diagram::ids::{CellId, FaceId, PeriodicPair, VertexId};

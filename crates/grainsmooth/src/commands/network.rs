@@ -7,9 +7,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use grainsmooth::{
-    CellTable, CellsSummary, Config, ElementOptions, Error, Estimate, Output, Series, SeriesOutput, Stage,
-    StagedFiles, Summary, Synthesis, TableFormat, Tessellated, check_expected_size, smooth_watched,
-    tessellate, write_together,
+    CellTable, CellsSummary, Config, ElementOptions, Error, Estimate, ListedSummary, Output, Series,
+    SeriesOutput, Stage, StagedFiles, Summary, Synthesis, TableFormat, check_expected_size, list_cells,
+    smooth_watched, tessellate, write_together,
 };
 
 use super::result_files::{ResultFiles, check_all_differ, thread_pool};
@@ -105,16 +105,7 @@ impl Files {
         tables.chain(self.result.paths()).chain(series).collect()
     }
 
-    fn stage_tables(
-        &self,
-        config: &Config,
-        cells: &Tessellated,
-        staged: &mut StagedFiles,
-    ) -> Result<(), Error> {
-        if self.tables.is_empty() {
-            return Ok(());
-        }
-        let table = CellTable::new(config, cells);
+    fn stage_tables(&self, table: CellTable<'_>, staged: &mut StagedFiles) -> Result<(), Error> {
         self.tables.iter().try_for_each(|output| table.stage(output, staged))
     }
 }
@@ -129,8 +120,13 @@ fn estimate(config: &Config, files: &Files, line: &ProgressLine) -> Result<Estim
 fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String, Error> {
     let progress = |stage, done, count| line.show(stage, done, count);
     if files.is_cells_only {
+        if config.lists_cells() {
+            let cells = list_cells(config, &progress)?;
+            write_together(|staged| files.stage_tables(CellTable::of_list(config, &cells), staged))?;
+            return Ok(ListedSummary(config, &cells).to_string().trim_end().to_owned());
+        }
         let cells = tessellate(config, &progress)?.stretched(config);
-        write_together(|staged| files.stage_tables(config, &cells, staged))?;
+        write_together(|staged| files.stage_tables(CellTable::new(config, &cells), staged))?;
         return Ok(CellsSummary(config, &cells).to_string().trim_end().to_owned());
     }
     check_expected_size(config)?;
@@ -152,7 +148,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     let start = Instant::now();
     write_together(|staged| {
         if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
-            files.stage_tables(config, cells, staged)?;
+            files.stage_tables(CellTable::new(config, cells), staged)?;
         }
         files.result.stage(&polycrystal, staged)?;
         if let Some((output, series)) = &series {

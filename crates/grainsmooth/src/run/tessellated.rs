@@ -15,7 +15,7 @@ use super::stage::{Clock, Progress, Stage};
 use crate::grains::gradient::Gradient;
 use crate::grains::inner::InnerGrains;
 use crate::grains::placed::{PlacedGrains, rearranged};
-use crate::memory::{available_memory, check_cells};
+use crate::memory::{MemoryError, available_memory, check_cells};
 use crate::seeds::count::seed_count;
 use crate::seeds::random::unit_fraction;
 use crate::{
@@ -160,7 +160,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     let (textures, histogram) = (config.textures()?, config.texture.histogram()?);
     let gradient = Gradient::of_config(config)?;
     let (FileSeeds { mut seeds, passed_over }, mut sizes) =
-        clock.time(Stage::Seeds, || seeds(config, &domain))?;
+        clock.time(Stage::Seeds, || seeds(config, &domain, check_cells))?;
     if let Some(gradient) = gradient
         && let Some(drawn) = sizes.take()
     {
@@ -277,13 +277,13 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
 }
 
 /// Seeds with the numbers that they had among all.
-struct NumberedSeeds {
-    seeds: Vec<FileSeed>,
-    ids: Vec<u32>,
+pub(super) struct NumberedSeeds {
+    pub(super) seeds: Vec<FileSeed>,
+    pub(super) ids: Vec<u32>,
 }
 
 impl NumberedSeeds {
-    fn new(seeds: Vec<FileSeed>) -> Self {
+    pub(super) fn new(seeds: Vec<FileSeed>) -> Self {
         Self { ids: (0u32..).zip(&seeds).map(|(number, seed)| seed.id.unwrap_or(number)).collect(), seeds }
     }
 
@@ -370,10 +370,14 @@ fn shaped_grains(
     })
 }
 
-/// The seeds, and the volumes that their cells are to have where these are given.
-fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSizes>), Error> {
+/// The seeds, and the volumes that their cells are to have where these are given, if `check` finds memory for so many cells.
+pub(super) fn seeds(
+    config: &Config,
+    domain: &Domain,
+    check: fn(usize, u64) -> Result<(), MemoryError>,
+) -> Result<(FileSeeds, Option<GrainSizes>), Error> {
     if let Some(count) = seed_count(config) {
-        check_cells(count, available_memory())?;
+        check(count, available_memory())?;
     }
     let sizes = |count| config.is_sized().then(|| GrainSizes::draw(config, domain, count)).transpose();
     let (positions, sizes) = match &config.seeds {
@@ -423,7 +427,7 @@ fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSiz
 }
 
 /// The error with the line of the seed file that it comes from.
-fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
+pub(super) fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
     let SeedSource::File(path) = &config.seeds else { return error.into() };
     let seed = match &error {
         VoronoiError::NotFinite { seed, .. }

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use glam::DVec3;
-use serde::Serialize;
-use voronoi::{CellId, CellMeasure, Dimension, Side};
+use serde::ser::{Serialize, SerializeSeq, SerializeStruct, Serializer};
+use voronoi::{CellId, Dimension, Side, SingleCell};
 
-use super::table::{Table, Value};
-use crate::{Config, Error, Output, StagedFiles, Tessellated};
+use super::table::{RowAsMap, Value, write_csv};
+use crate::{Config, Error, GrainAttributes, ListedCells, Output, StagedFiles, Tessellated};
 
 /// A format of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,21 +30,47 @@ impl TableFormat {
     }
 }
 
-/// One row for each cell of a tessellation: the flat cells, before any relaxation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CellTable {
+/// One row for each cell of some seeds: the flat cells, before any relaxation.
+pub struct CellTable<'a> {
     settings: BTreeMap<String, toml::Value>,
-    cells: Table,
+    dimension: Dimension,
+    count: u32,
+    weights: Option<&'a [f64]>,
+    grains: &'a GrainAttributes,
+    cell: Box<dyn Fn(CellId) -> SingleCell + Sync + 'a>,
 }
 
-impl CellTable {
+impl<'a> CellTable<'a> {
     /// Measures all cells. Walls among the `neighbors` are -1 (x0), -2 (x1), -3, -4 (y) and -5, -6 (z), those of a
     /// polyhedron -1 - number.
-    pub fn new(config: &Config, cells: &Tessellated) -> Self {
+    pub fn new(config: &Config, cells: &'a Tessellated) -> Self {
         let tessellation = &cells.tessellation;
-        let rows =
-            (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| row(cells, CellId(id), &measure));
-        Self { settings: config.settings().into_iter().collect(), cells: Table::of_records(rows) }
+        let measures = tessellation.cell_measures();
+        let cell = move |cell: CellId| SingleCell {
+            cell,
+            seed: tessellation.seeds()[cell.index()],
+            measure: measures[cell.index()],
+            neighbors: tessellation.neighbors(cell),
+        };
+        Self::of(config, tessellation.cell_count(), Some(&cells.weights), &cells.grains, Box::new(cell))
+    }
+
+    /// The same of cells without their complex.
+    pub fn of_list(config: &Config, cells: &'a ListedCells) -> Self {
+        let cell = |cell: CellId| cells.cells.cell(cell);
+        Self::of(config, cells.cells.len(), cells.weights.as_deref(), &cells.grains, Box::new(cell))
+    }
+
+    fn of(
+        config: &Config,
+        count: usize,
+        weights: Option<&'a [f64]>,
+        grains: &'a GrainAttributes,
+        cell: Box<dyn Fn(CellId) -> SingleCell + Sync + 'a>,
+    ) -> Self {
+        let settings = config.settings().into_iter().collect();
+        let count = u32::try_from(count).expect("cell ids fit 32 bits");
+        Self { settings, dimension: config.dimension, count, weights, grains, cell }
     }
 
     /// Completes the table.
@@ -57,26 +83,63 @@ impl CellTable {
                 serde_json::to_writer(&mut *out, self)?;
                 writeln!(out)
             }
-            TableFormat::Csv => self.cells.write_csv(out),
+            TableFormat::Csv => {
+                let names = |(name, value): &(&str, Value)| value.names_in_csv(name);
+                let header = self.record(0).iter().flat_map(names).collect();
+                let line = |index| self.record(index).iter().flat_map(|(_, value)| value.in_csv()).collect();
+                write_csv(header, self.count as usize, line, out)
+            }
         })
+    }
+
+    fn record(&self, index: usize) -> Vec<(&'static str, Value)> {
+        let cell = CellId(u32::try_from(index).expect("cell ids fit 32 bits"));
+        record(
+            self.dimension,
+            (self.cell)(cell),
+            self.weights.map_or(0.0, |weights| weights[index]),
+            self.grains,
+        )
     }
 }
 
-fn row(cells: &Tessellated, cell: CellId, measure: &CellMeasure) -> Vec<(&'static str, Value)> {
-    let (tessellation, index) = (&cells.tessellation, cell.index());
-    let dimension = tessellation.domain().dimension();
+impl Serialize for CellTable<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        struct Rows<'a>(&'a CellTable<'a>);
+        impl Serialize for Rows<'_> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                let mut rows = serializer.serialize_seq(Some(self.0.count as usize))?;
+                for index in 0..self.0.count as usize {
+                    let (names, values): (Vec<_>, Vec<_>) = self.0.record(index).into_iter().unzip();
+                    rows.serialize_element(&RowAsMap(&names, &values))?;
+                }
+                rows.end()
+            }
+        }
+        let mut table = serializer.serialize_struct("CellTable", 2)?;
+        table.serialize_field("settings", &self.settings)?;
+        table.serialize_field("cells", &Rows(self))?;
+        table.end()
+    }
+}
+
+fn record(
+    dimension: Dimension,
+    cell: SingleCell,
+    weight: f64,
+    grains: &GrainAttributes,
+) -> Vec<(&'static str, Value)> {
+    let SingleCell { cell, seed, measure, neighbors } = cell;
+    let index = cell.index();
     let count = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
     let point = |point: DVec3| Value::Point(point.to_array()[..usize::from(dimension.axes())].to_vec());
     // Of the ball with the cell's volume; in the plane, of the circle with its area.
     let equivalent_diameter = dimension.ball_diameter(measure.volume);
-    let mut row = vec![
-        ("id", Value::Integer(cell.0.into())),
-        ("seed", point(tessellation.seeds()[index])),
-        ("weight", Value::Number(cells.weights[index])),
-    ];
+    let mut record =
+        vec![("id", Value::Integer(cell.0.into())), ("seed", point(seed)), ("weight", Value::Number(weight))];
     let [faces, edges, vertices] = [measure.face_count, measure.edge_count, measure.vertex_count].map(count);
     match dimension {
-        Dimension::Three => row.extend([
+        Dimension::Three => record.extend([
             ("volume", Value::Number(measure.volume)),
             ("centroid", point(measure.centroid)),
             ("area", Value::Number(measure.area)),
@@ -86,7 +149,7 @@ fn row(cells: &Tessellated, cell: CellId, measure: &CellMeasure) -> Vec<(&'stati
             ("equivalent_diameter", Value::Number(equivalent_diameter)),
             ("sphericity", Value::Number(PI * equivalent_diameter.powi(2) / measure.area)),
         ]),
-        Dimension::Two => row.extend([
+        Dimension::Two => record.extend([
             ("area", Value::Number(measure.volume)),
             ("centroid", point(measure.centroid)),
             ("perimeter", Value::Number(measure.area)),
@@ -100,22 +163,22 @@ fn row(cells: &Tessellated, cell: CellId, measure: &CellMeasure) -> Vec<(&'stati
         Side::Cell(cell) | Side::Image(cell, _) => i64::from(cell.0),
         Side::Wall(wall) => -1 - i64::from(wall.number()),
     };
-    let mut neighbors: Vec<i64> = tessellation.neighbors(cell).into_iter().map(number).collect();
+    let mut neighbors: Vec<i64> = neighbors.into_iter().map(number).collect();
     neighbors.sort_unstable();
-    let grains = &cells.grains;
-    row.extend([
+    record.extend([
         ("neighbors", Value::Integers(neighbors)),
         ("SeedId", Value::Integer(grains.ids[index].into())),
     ]);
-    row.extend(
+    record.extend(
         grains.parents.as_ref().map(|parents| ("Parent", Value::Integer(parents.number(index).into()))),
     );
-    row.extend(grains.phases.as_ref().map(|phases| ("Phase", Value::Integer(phases.number(index).into()))));
+    record
+        .extend(grains.phases.as_ref().map(|phases| ("Phase", Value::Integer(phases.number(index).into()))));
     if let Some(orientation) = grains.texture.as_ref().map(|texture| texture.orientations()[index]) {
-        row.extend([
+        record.extend([
             ("EulerAngles", Value::Numbers(orientation.euler_degrees().to_vec())),
             ("Quaternion", Value::Numbers(orientation.quaternion().to_vec())),
         ]);
     }
-    row
+    record
 }

@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
 use polycrystal::GrainId;
-use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
+use rayon::prelude::*;
+use serde::ser::{Serialize, Serializer};
 
 /// Rows of values under named columns: written as CSV, or as a list of JSON objects.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,34 +33,44 @@ impl Table {
         self.rows.iter_mut().for_each(|row| row.push(value(row)));
     }
 
-    /// The table of rows that have the same columns.
-    pub(crate) fn of_records(records: impl Iterator<Item = Vec<(&'static str, Value)>>) -> Self {
-        let mut columns = Vec::new();
-        let rows = records.map(|record| {
-            let (names, values): (Vec<_>, Vec<_>) = record.into_iter().unzip();
-            columns = names;
-            values
-        });
-        let rows = rows.collect();
-        Self { columns, rows }
-    }
-
     /// Writes a header line, then one line a row.
     pub(crate) fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(out);
         let first: &[Value] = self.rows.first().map_or(&[], |row| row);
         let header = (0..).zip(&self.columns).flat_map(|(k, name): (usize, _)| match first.get(k) {
-            // A seed has the names that `--seeds-file` reads.
-            Some(Value::Point(point)) if *name == "seed" => axis_names(point.len(), ""),
-            Some(Value::Point(point)) => axis_names(point.len(), &format!("{name}_")),
-            _ => vec![(*name).to_owned()],
+            Some(value) => value.names_in_csv(name),
+            None => vec![(*name).to_owned()],
         });
-        writer.write_record(header)?;
-        for row in &self.rows {
-            writer.write_record(row.iter().flat_map(Value::in_csv))?;
-        }
-        writer.flush()
+        let line = |index: usize| self.rows[index].iter().flat_map(Value::in_csv).collect();
+        write_csv(header.collect(), self.rows.len(), line, out)
     }
+}
+
+/// Lines that a thread puts into words at once: some hundred kilobytes of text.
+const LINES_AT_ONCE: usize = 1024;
+
+/// Writes a header and so many lines, which threads put into words side by side.
+pub(crate) fn write_csv(
+    header: Vec<String>,
+    count: usize,
+    line: impl Fn(usize) -> Vec<String> + Sync,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let in_words = |lines: Vec<Vec<String>>| {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        lines.iter().try_for_each(|line| writer.write_record(line))?;
+        writer.into_inner().map_err(csv::IntoInnerError::into_error)
+    };
+    out.write_all(&in_words(vec![header])?)?;
+    let at_once = LINES_AT_ONCE * rayon::current_num_threads();
+    for first in (0..count).step_by(at_once) {
+        let last = count.min(first + at_once);
+        let parts = (first..last).into_par_iter().step_by(LINES_AT_ONCE);
+        let parts =
+            parts.map(|start| in_words((start..last.min(start + LINES_AT_ONCE)).map(&line).collect()));
+        let texts: Vec<Vec<u8>> = parts.collect::<io::Result<_>>()?;
+        texts.iter().try_for_each(|text| out.write_all(text))?;
+    }
+    Ok(())
 }
 
 fn axis_names(count: usize, before: &str) -> Vec<String> {
@@ -75,7 +86,17 @@ impl Value {
         }
     }
 
-    fn in_csv(&self) -> Vec<String> {
+    /// The names of its columns in CSV, in a column of some name.
+    pub(crate) fn names_in_csv(&self, name: &str) -> Vec<String> {
+        match self {
+            // A seed has the names that `--seeds-file` reads.
+            Self::Point(point) if name == "seed" => axis_names(point.len(), ""),
+            Self::Point(point) => axis_names(point.len(), &format!("{name}_")),
+            _ => vec![name.to_owned()],
+        }
+    }
+
+    pub(crate) fn in_csv(&self) -> Vec<String> {
         let number = |value: &f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
         match self {
             Self::Integer(value) => vec![value.to_string()],
@@ -90,20 +111,15 @@ impl Value {
 
 impl Serialize for Table {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        struct Row<'a>(&'a [&'static str], &'a [Value]);
-        impl Serialize for Row<'_> {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let mut row = serializer.serialize_map(Some(self.0.len()))?;
-                for (column, value) in self.0.iter().zip(self.1) {
-                    row.serialize_entry(column, value)?;
-                }
-                row.end()
-            }
-        }
-        let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
-        for row in &self.rows {
-            rows.serialize_element(&Row(&self.columns, row))?;
-        }
-        rows.end()
+        serializer.collect_seq(self.rows.iter().map(|row| RowAsMap(&self.columns, row)))
+    }
+}
+
+/// A row as an object of JSON.
+pub(crate) struct RowAsMap<'a>(pub(crate) &'a [&'static str], pub(crate) &'a [Value]);
+
+impl Serialize for RowAsMap<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().zip(self.1))
     }
 }

@@ -14,39 +14,39 @@ use crate::diagram::cell_sum::CellSum;
 use crate::diagram::united_vertices::UnitedVertices;
 use crate::exact::face_end::FaceEnd;
 use crate::exact::generator::Generator;
-use crate::sites::search::Search;
+use crate::sites::search::{Names, Search};
 use crate::{
     CellId, CellMeasure, Dimension, Domain, PeriodicVertex, Side, Tessellation, Translation, VoronoiError,
 };
 
 /// A cell by itself.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StreamedCell {
+pub struct SingleCell {
     /// The number of its seed.
     pub cell: CellId,
-    /// Size and counts; nothing but the seed for an empty cell.
+    /// Where the seed is.
+    pub seed: DVec3,
+    /// Size and counts.
     pub measure: CellMeasure,
     /// As of [`Tessellation::neighbors`].
     pub neighbors: Vec<Side>,
 }
 
 /// The cells of all seeds, one after another: see [`Tessellation::stream`].
-pub struct CellStream<'a> {
-    cells: Cells<'a>,
-    next: u32,
-}
+#[derive(Debug)]
+pub struct CellStream(Cells);
 
-#[expect(clippy::large_enum_variant, reason = "there is one")]
-enum Cells<'a> {
+#[derive(Debug)]
+enum Cells {
     /// In space.
-    Tiles(TiledCells<'a>),
+    Tiles(TiledCells),
     /// In the plane.
     Whole(Tessellation, Vec<CellMeasure>),
 }
 
 impl Tessellation {
-    /// The cells of seeds one after another, in the order of the seeds, where their complex is not needed or too large: in space they take about 200 bytes each, seeds included, a
-    /// fifth of what a tessellation takes. With weights, the cells are those of [`Self::power`].
+    /// The cells of seeds one after another, in the order of the seeds, where their complex is not needed or too large: in space they
+    /// take about 140 bytes each, a sixth of what a tessellation takes. With weights, the cells are those of [`Self::power`].
     ///
     /// All cells are cut, in parallel, before the first one comes. In the plane their complex is made.
     ///
@@ -55,8 +55,8 @@ impl Tessellation {
     /// use voronoi::{Domain, Tessellation};
     ///
     /// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
-    /// let domain = Domain::unit_cube();
-    /// for cell in Tessellation::stream(&domain, &seeds, None)? {
+    /// let cells = Tessellation::stream(&Domain::unit_cube(), &seeds, None)?;
+    /// for cell in cells.iter() {
     ///     assert!((cell.measure.volume - 0.5).abs() < 1e-15);
     ///     assert_eq!(cell.neighbors.len(), 6, "the other cell and five walls");
     /// }
@@ -68,69 +68,63 @@ impl Tessellation {
     ///
     /// # Panics
     /// When there are weights, but not as many as seeds.
-    pub fn stream<'a>(
-        domain: &'a Domain,
-        seeds: &'a [DVec3],
+    pub fn stream(
+        domain: &Domain,
+        seeds: &[DVec3],
         weights: Option<&[f64]>,
-    ) -> Result<CellStream<'a>, VoronoiError> {
-        let cells = match domain.dimension() {
-            Dimension::Two => {
-                let tessellation = match weights {
-                    Some(weights) => Self::power(domain, seeds, weights)?,
-                    None => Self::new(domain, seeds)?,
-                };
-                let measures = tessellation.cell_measures();
-                Cells::Whole(tessellation, measures)
-            }
-            Dimension::Three => {
-                check(domain, seeds, weights)?;
-                Cells::Tiles(TiledCells::new(Search::new(domain, seeds, weights)?, seeds)?)
-            }
-        };
-        Ok(CellStream { cells, next: 0 })
+    ) -> Result<CellStream, VoronoiError> {
+        if domain.dimension() == Dimension::Two {
+            let tessellation = match weights {
+                Some(weights) => Self::power(domain, seeds, weights)?,
+                None => Self::new(domain, seeds)?,
+            };
+            let measures = tessellation.cell_measures();
+            return Ok(CellStream(Cells::Whole(tessellation, measures)));
+        }
+        check(domain, seeds, weights)?;
+        Ok(CellStream(Cells::Tiles(TiledCells::new(Search::new(domain, seeds, weights)?)?)))
     }
 }
 
-impl Iterator for CellStream<'_> {
-    type Item = StreamedCell;
-
-    fn next(&mut self) -> Option<StreamedCell> {
-        let cell = CellId(self.next);
-        (cell.index() < self.cell_count()).then(|| {
-            self.next += 1;
-            match &self.cells {
-                Cells::Tiles(cells) => cells.cell(cell),
-                Cells::Whole(tessellation, measures) => StreamedCell {
-                    cell,
-                    measure: measures[cell.index()],
-                    neighbors: tessellation.neighbors(cell),
-                },
-            }
-        })
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.cell_count() - self.next as usize;
-        (left, Some(left))
-    }
-}
-
-impl ExactSizeIterator for CellStream<'_> {}
-
-impl CellStream<'_> {
-    fn cell_count(&self) -> usize {
-        match &self.cells {
-            Cells::Tiles(cells) => cells.seeds.len(),
+impl CellStream {
+    /// Number of cells.
+    #[expect(clippy::len_without_is_empty, reason = "there is always a seed")]
+    pub fn len(&self) -> usize {
+        match &self.0 {
+            Cells::Tiles(cells) => cells.indices.len(),
             Cells::Whole(tessellation, _) => tessellation.cell_count(),
         }
+    }
+
+    /// One of the cells.
+    ///
+    /// # Panics
+    /// When there is no such cell.
+    pub fn cell(&self, cell: CellId) -> SingleCell {
+        match &self.0 {
+            Cells::Tiles(cells) => cells.cell(cell),
+            Cells::Whole(tessellation, measures) => SingleCell {
+                cell,
+                seed: tessellation.seeds()[cell.index()],
+                measure: measures[cell.index()],
+                neighbors: tessellation.neighbors(cell),
+            },
+        }
+    }
+
+    /// All cells in the order of the seeds.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = SingleCell> + '_ {
+        (0..u32::try_from(self.len()).expect("cell ids fit 32 bits")).map(|cell| self.cell(CellId(cell)))
     }
 }
 
 /// The cells of tiles, in space.
-struct TiledCells<'a> {
-    search: Search<'a>,
-    seeds: &'a [DVec3],
-    /// Of each seed, its index in the order of the tiles.
+#[derive(Debug)]
+struct TiledCells {
+    /// In the order of the tiles.
+    seeds: Vec<DVec3>,
+    names: Names,
+    /// Of each seed in the user's order, its index in that of the tiles.
     indices: Vec<u32>,
     tiles: Vec<TileCells>,
     /// Of each cell without volume that symbolically has a thickness, by the number of its seed, what its two faces touch.
@@ -138,6 +132,7 @@ struct TiledCells<'a> {
 }
 
 /// What is kept of the cells of a tile.
+#[derive(Debug)]
 struct TileCells {
     first_seed: u32,
     sums: Vec<CellSum>,
@@ -146,38 +141,39 @@ struct TileCells {
     beyond: Vec<Generator>,
 }
 
-impl<'a> TiledCells<'a> {
-    fn new(mut search: Search<'a>, seeds: &'a [DVec3]) -> Result<Self, VoronoiError> {
+impl TiledCells {
+    fn new(mut search: Search<'_>) -> Result<Self, VoronoiError> {
         let tiles = map_whole_cells(&mut search, TileCells::new)?;
+        let indices = search.indices();
+        let (seeds, names) = search.into_names();
         let mut flat = HashMap::default();
         for tile in &tiles {
-            for (seed, starts) in (tile.first_seed..).zip(tile.starts.windows(2)) {
+            for (index, starts) in (tile.first_seed..).zip(tile.starts.windows(2)) {
                 if let &[a, b] = &tile.beyond[starts[0] as usize..starts[1] as usize] {
-                    flat.insert(search.ids()[seed as usize], [a, b].map(|generator| search.end(generator)));
+                    flat.insert(names.ids[index as usize], [a, b].map(|generator| names.end(generator)));
                 }
             }
         }
-        let indices = search.indices();
-        search.forget_sites();
-        Ok(Self { search, seeds, indices, tiles, flat })
+        Ok(Self { seeds, names, indices, tiles, flat })
     }
 
-    fn cell(&self, cell: CellId) -> StreamedCell {
+    fn cell(&self, cell: CellId) -> SingleCell {
         let index = self.indices[cell.index()];
+        let seed = self.seeds[index as usize];
+        if self.flat.contains_key(&cell.0) {
+            let measure = CellSum::default().measure(seed);
+            return SingleCell { cell, seed, measure, neighbors: Vec::new() };
+        }
         let tile = &self.tiles[self.tiles.partition_point(|tile| tile.first_seed <= index) - 1];
         let place = (index - tile.first_seed) as usize;
-        let seed = self.seeds[cell.index()];
-        if self.flat.contains_key(&cell.0) {
-            return StreamedCell { cell, measure: CellSum::default().measure(seed), neighbors: Vec::new() };
-        }
         let beyond = &tile.beyond[tile.starts[place] as usize..tile.starts[place + 1] as usize];
         let own = FaceEnd::cell(cell.0);
         let touched = |generator: &Generator| {
-            Side::of(self.behind_flat_cells(own, self.search.end(*generator)), Translation::ZERO)
+            Side::of(self.behind_flat_cells(own, self.names.end(*generator)), Translation::ZERO)
         };
         let mut neighbors: Vec<Side> = beyond.iter().map(touched).collect();
         neighbors.sort_unstable();
-        StreamedCell { cell, measure: tile.sums[place].measure(seed), neighbors }
+        SingleCell { cell, seed, measure: tile.sums[place].measure(seed), neighbors }
     }
 
     /// What a cell touches where it meets some end of a face: behind a cell without volume, what lies on the other side of that.

@@ -27,6 +27,14 @@ impl ImageTable {
         &self.list
     }
 
+    /// The seed, and by how many periods it is moved, that a site is the image of: sites are so many seeds, then the list.
+    pub(crate) fn image(&self, seed_count: usize, site: u32) -> Image {
+        match (site as usize).checked_sub(seed_count) {
+            None => Image { seed: site, translation: Translation::ZERO },
+            Some(image) => self.list[image],
+        }
+    }
+
     /// Place of an image in the list.
     pub(crate) fn find(&self, image: Image) -> Option<usize> {
         let seed = image.seed as usize;

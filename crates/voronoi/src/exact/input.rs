@@ -21,10 +21,7 @@ pub(crate) struct ExactInput<'a> {
 impl<'a> ExactInput<'a> {
     /// The seed, and by how many periods it is moved, that a site is the image of.
     pub(crate) fn image(self, site: u32) -> Image {
-        match (site as usize).checked_sub(self.seeds.len()) {
-            None => Image { seed: site, translation: Translation::ZERO },
-            Some(image) => self.images.list()[image],
-        }
+        self.images.image(self.seeds.len(), site)
     }
 
     /// The site that is an image of a seed, if there is one.

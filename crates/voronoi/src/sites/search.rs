@@ -51,6 +51,31 @@ pub(crate) struct Layer {
     pub(crate) sites: SiteTree,
 }
 
+/// What is left of a search when all cells are cut.
+#[derive(Debug)]
+pub(crate) struct Names {
+    /// The seeds' indices in the user's input.
+    pub(crate) ids: Vec<u32>,
+    images: ImageTable,
+}
+
+impl Names {
+    /// As of [`Search::end`].
+    pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
+        end(&self.ids, &self.images, generator)
+    }
+}
+
+fn end(ids: &[u32], images: &ImageTable, generator: Generator) -> FaceEnd {
+    match generator.plane() {
+        Plane::Side(wall) | Plane::Facet(wall) => FaceEnd::Wall(wall),
+        Plane::Site(site) => {
+            let image = images.image(ids.len(), site);
+            FaceEnd::Cell(Image { seed: ids[image.seed as usize], ..image })
+        }
+    }
+}
+
 impl<'a> Search<'a> {
     /// Sorts the seeds.
     ///
@@ -100,11 +125,6 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
-    /// Gives back the memory that only the search needs; names of what cells touch stay.
-    pub(crate) fn forget_sites(&mut self) {
-        self.layers.iter_mut().for_each(|layer| layer.sites = SiteTree::default());
-    }
-
     /// The domain that is divided up.
     pub(crate) fn domain(&self) -> &'a Domain {
         self.domain
@@ -131,13 +151,13 @@ impl<'a> Search<'a> {
 
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
-        match generator.plane() {
-            Plane::Side(wall) | Plane::Facet(wall) => FaceEnd::Wall(wall),
-            Plane::Site(site) => {
-                let image = self.input().image(site);
-                FaceEnd::Cell(Image { seed: self.ids[image.seed as usize], ..image })
-            }
-        }
+        end(&self.ids, &self.layers[self.layers.len() - 1].images, generator)
+    }
+
+    /// The seeds in this order, and what their numbers mean to the user.
+    pub(crate) fn into_names(mut self) -> (Vec<DVec3>, Names) {
+        let images = self.layers.pop().map(|layer| layer.images).unwrap_or_default();
+        (self.seeds, Names { ids: self.ids, images })
     }
 
     /// Whether what lies beyond a seed's plane comes before what lies beyond another generator's, in the user's numbering.

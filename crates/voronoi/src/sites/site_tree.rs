@@ -20,7 +20,6 @@ use crate::sites::near::Within;
 const MOST_IN_ROWS: usize = 1000;
 
 /// Sites, sorted so that what is near in space is near in memory, and boxes around them.
-#[derive(Default)]
 pub(crate) struct SiteTree {
     /// Where few blocks are crowded, and the sites are in its order.
     grid: Option<SeedGrid>,

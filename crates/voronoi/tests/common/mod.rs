@@ -39,8 +39,9 @@ fn assert_streams_alike(tessellation: &Tessellation, weights: Option<&[f64]>) {
     let domain = tessellation.domain();
     let cells = Tessellation::stream(domain, tessellation.seeds(), weights).expect("valid seeds");
     assert_eq!(cells.len(), tessellation.cell_count());
-    for (cell, whole) in cells.zip(tessellation.cell_measures()) {
+    for (cell, whole) in cells.iter().zip(tessellation.cell_measures()) {
         let id = cell.cell;
+        assert_eq!(cell.seed, tessellation.seeds()[id.index()]);
         assert_eq!(cell.neighbors, tessellation.neighbors(id), "neighbours of {id:?}");
         let counts = |measure: &CellMeasure| (measure.face_count, measure.edge_count, measure.vertex_count);
         assert_eq!(counts(&cell.measure), counts(&whole), "{id:?}");
