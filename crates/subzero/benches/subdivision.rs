@@ -90,10 +90,9 @@ fn tables(c: &mut Criterion) {
 
 fn edits(c: &mut Criterion) {
     let (triangles, points) = sphere_hull_along_curve(POINTS);
-    let (mesh, _) = base_mesh(points.len(), &triangles)
-        .loop_subdivide(&points, 2, LoopWeights::Loop)
-        .expect("a small mesh");
-    let mesh = HalfEdgeMesh::from_triangle_mesh(&mesh).expect("the mesh is manifold");
+    let levels =
+        LoopHierarchy::new(base_mesh(points.len(), &triangles), 2, LoopWeights::Loop).expect("a small mesh");
+    let mesh = HalfEdgeMesh::from_triangle_mesh(levels.finest()).expect("the mesh is manifold");
     // One half-edge in so many, in order, and of each in turn one of its triangle's three.
     let step = mesh.half_edge_count() / EDITS;
     let in_order: Vec<u32> =

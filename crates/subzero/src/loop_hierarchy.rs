@@ -15,8 +15,8 @@ pub struct LoopHierarchy {
 }
 
 impl TriangleMesh {
-    /// The mesh refined `levels` times by Loop's scheme, and its points. Faster than a [`LoopHierarchy`] if the points will
-    /// not change.
+    /// The triangles and points of the mesh refined `levels` times by Loop's scheme. Takes half of the time and memory of a
+    /// [`LoopHierarchy`], which also knows the edges of the finest mesh and keeps all levels for points that change.
     ///
     /// ```
     /// use glam::DVec3;
@@ -25,9 +25,9 @@ impl TriangleMesh {
     /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
     /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
     /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
-    /// let (finest, finest_points) = mesh.loop_subdivide(&points, 3, LoopWeights::Loop)?;
-    /// assert_eq!(finest.triangles().len(), 4 * 64);
-    /// assert_eq!(finest_points.len(), finest.vertex_count());
+    /// let (triangles, points) = mesh.loop_subdivide(&points, 3, LoopWeights::Loop)?;
+    /// assert_eq!(triangles.len(), 4 * 64);
+    /// assert_eq!(points.len(), triangles.len() / 2 + 2);
     /// # Ok::<(), subzero::MeshError>(())
     /// ```
     ///
@@ -41,19 +41,24 @@ impl TriangleMesh {
         points: &[P],
         levels: usize,
         weights: LoopWeights,
-    ) -> Result<(Self, Vec<P>), MeshError> {
+    ) -> Result<(Vec<[u32; 3]>, Vec<P>), MeshError> {
+        assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
+        let Some(last) = levels.checked_sub(1) else { return Ok((self.triangles, points.to_vec())) };
         let rings = BaseRings::new(&self, weights);
         let mut ancestors = Vec::with_capacity(levels);
         let mut mesh = self;
         let mut points = points.to_vec();
-        for _ in 0..levels {
+        for level in 0..levels {
+            mesh.counts().refined()?;
             let mut refined = large_vec::zeros(mesh.vertex_count() + mesh.edge_count());
             mesh.loop_points(&ancestors, &rings, &points, weights, &mut refined);
             points = refined;
-            let finer = mesh.refine_connectivity()?;
-            ancestors.push(std::mem::replace(&mut mesh, finer));
+            if level < last {
+                let finer = mesh.refine_connectivity()?;
+                ancestors.push(std::mem::replace(&mut mesh, finer));
+            }
         }
-        Ok((mesh, points))
+        Ok((mesh.refined_triangles(), points))
     }
 }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id, next, prev};
 use crate::large_vec;
-use crate::{EdgeId, FaceId, HalfEdgeId, LoopWeights, MeshCounts, MeshError, Refinement, TriangleMesh};
+use crate::{EdgeId, FaceId, HalfEdgeId, LoopWeights, MeshError, Refinement, TriangleMesh};
 
 /// Parents that one task refines.
 const PARENTS_PER_TASK: usize = 2048;
@@ -32,14 +32,12 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
     pub fn refine_connectivity(&self) -> Result<Self, MeshError> {
-        let counts = self.counts();
-        let refined = counts.refined()?;
+        let refined = self.counts().refined()?;
         let sharpness =
             self.sharpness.refine(self.vertex_count(), |vertex, edge| self.edge(edge)[0] == vertex);
-        let (triangles, directed_edges) = self.refined_arrays(counts);
         Ok(Self {
-            triangles,
-            directed_edges,
+            triangles: self.refined_triangles(),
+            directed_edges: self.refined_directed_edges(),
             edges: self.refined_edges(),
             outgoing: self.refined_outgoing(),
             vertex_rules: sharpness.vertex_rules(refined.vertices as usize),
@@ -70,8 +68,19 @@ impl TriangleMesh {
 
     /// All triangles of the refined mesh, without that mesh.
     pub fn refined_triangles(&self) -> Vec<[u32; 3]> {
-        let triangles = 0..id(4 * self.triangles.len());
-        triangles.into_par_iter().map(|triangle| self.refined_triangle(FaceId(triangle))).collect()
+        let counts = self.counts();
+        let parents = self.triangles.len();
+        let mut triangles = large_vec::zeros::<[u32; 3]>(4 * parents);
+        let (corners, centres) = triangles.split_at_mut(3 * parents);
+        let old = self.triangles.par_iter().zip(&self.directed_edges);
+        let new = corners.as_chunks_mut::<3>().0.par_iter_mut().zip(centres);
+        old.zip(new).with_min_len(PARENTS_PER_TASK).for_each(|((triangle, directed), (corners, centre))| {
+            let [first, second, third] = directed.map(|directed| counts.edge_vertex(EdgeId(directed / 2)));
+            *corners =
+                [[triangle[0], first, third], [triangle[1], second, first], [triangle[2], third, second]];
+            *centre = [third, first, second];
+        });
+        triangles
     }
 
     /// The half-edge on the other side in the refined mesh, without that mesh; nothing on boundary and non-manifold edges.
@@ -115,34 +124,29 @@ impl TriangleMesh {
         })
     }
 
-    fn refined_arrays(&self, counts: MeshCounts) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
+    fn refined_directed_edges(&self) -> Vec<[u32; 3]> {
         let parents = self.triangles.len();
-        let mut triangles = large_vec::zeros::<[u32; 3]>(4 * parents);
         let mut directed_edges = large_vec::zeros::<[u32; 3]>(4 * parents);
-        let (corners, centres) = triangles.split_at_mut(3 * parents);
-        let (corner_edges, centre_edges) = directed_edges.split_at_mut(3 * parents);
-        let old = self.triangles.par_iter().zip(&self.directed_edges);
-        let corners = corners.par_chunks_exact_mut(3).zip(corner_edges.par_chunks_exact_mut(3));
-        let centres = centres.par_iter_mut().zip(centre_edges);
-        old.zip(corners).zip(centres).with_min_len(PARENTS_PER_TASK).enumerate().for_each(
-            |(t, (((triangle, directed), (corners, corner_edges)), (centre, centre_edges)))| {
-                let inner = 2 * counts.edges + 3 * id(t);
-                let on_edge = directed.map(|d| counts.edge_vertex(EdgeId(d / 2)));
+        let (corners, centres) = directed_edges.split_at_mut(3 * parents);
+        let new = corners.as_chunks_mut::<3>().0.par_iter_mut().zip(centres);
+        let first_inner = 2 * id(self.edges.len());
+        let old = self.directed_edges.par_iter();
+        old.zip(new).with_min_len(PARENTS_PER_TASK).enumerate().for_each(
+            |(t, (directed, (corners, centre)))| {
+                let inner = first_inner + 3 * id(t);
                 let [d0, d1, d2] = *directed;
                 // The halves of an edge where a half-edge starts and where it ends, in the half-edge's direction.
                 let first_half = |d: u32| 2 * d + d % 2;
                 let second_half = |d: u32| 2 * (d ^ 1) + d % 2;
-                corners[0] = [triangle[0], on_edge[0], on_edge[2]];
-                corners[1] = [triangle[1], on_edge[1], on_edge[0]];
-                corners[2] = [triangle[2], on_edge[2], on_edge[1]];
-                corner_edges[0] = [first_half(d0), 2 * inner, second_half(d2)];
-                corner_edges[1] = [first_half(d1), 2 * inner + 2, second_half(d0)];
-                corner_edges[2] = [first_half(d2), 2 * inner + 4, second_half(d1)];
-                *centre = [on_edge[2], on_edge[0], on_edge[1]];
-                *centre_edges = [2 * inner + 1, 2 * inner + 3, 2 * inner + 5];
+                *corners = [
+                    [first_half(d0), 2 * inner, second_half(d2)],
+                    [first_half(d1), 2 * inner + 2, second_half(d0)],
+                    [first_half(d2), 2 * inner + 4, second_half(d1)],
+                ];
+                *centre = [2 * inner + 1, 2 * inner + 3, 2 * inner + 5];
             },
         );
-        (triangles, directed_edges)
+        directed_edges
     }
 
     fn refined_edges(&self) -> Vec<[u32; 2]> {
