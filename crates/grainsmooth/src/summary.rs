@@ -244,7 +244,7 @@ pub struct ListedSummary<'a>(pub &'a Config, pub &'a ListedCells);
 impl fmt::Display for ListedSummary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(config, ListedCells { domain, cells, passed_over, .. }) = self;
-        write_cells(out, domain, cells.iter().map(|cell| cell.measure.volume))?;
+        write_cells(out, domain, cells.measures().map(|cell| cell.volume))?;
         write_lattice(out, config, domain, cells.len())?;
         write_passed_over(out, config, *passed_over)
     }

@@ -65,8 +65,9 @@ pub fn list_cells(config: &Config, progress: Progress<'_>) -> Result<ListedCells
         Tessellation::stream(&domain, &positions, weights.as_deref())
             .map_err(|error| located(error, config, &seeds))
     })?;
+    let numbered = (0u32..).zip(cells.measures());
     let empty: Vec<u32> =
-        cells.iter().filter(|cell| cell.measure.face_count == 0).map(|cell| cell.cell.0).collect();
+        numbered.filter(|(_, measure)| measure.face_count == 0).map(|(cell, _)| cell).collect();
     if !empty.is_empty() {
         return Err(Error::EmptyGrains { grains: empty });
     }

@@ -39,6 +39,7 @@ fn assert_streams_alike(tessellation: &Tessellation, weights: Option<&[f64]>) {
     let domain = tessellation.domain();
     let cells = Tessellation::stream(domain, tessellation.seeds(), weights).expect("valid seeds");
     assert_eq!(cells.len(), tessellation.cell_count());
+    assert!(cells.measures().eq(cells.iter().map(|cell| cell.measure)));
     for (cell, whole) in cells.iter().zip(tessellation.cell_measures()) {
         let id = cell.cell;
         assert_eq!(cell.seed, tessellation.seeds()[id.index()]);
