@@ -8,7 +8,7 @@ use glam::DVec3;
 use serde::ser::{Serialize, SerializeSeq, SerializeStruct, Serializer};
 use voronoi::{CellId, Dimension, Side, SingleCell};
 
-use super::table::{RowAsMap, Value, write_csv};
+use super::table::{RowAsMap, Value, push_csv_line, write_csv};
 use crate::{Config, Error, GrainAttributes, ListedCells, Output, StagedFiles, Tessellated};
 
 /// A format of tables.
@@ -85,9 +85,11 @@ impl<'a> CellTable<'a> {
             }
             TableFormat::Csv => {
                 let names = |(name, value): &(&str, Value)| value.names_in_csv(name);
-                let header = self.record(0).iter().flat_map(names).collect();
-                let line = |index| self.record(index).iter().flat_map(|(_, value)| value.in_csv()).collect();
-                write_csv(header, self.count as usize, line, out)
+                let header: Vec<String> = self.record(0).iter().flat_map(names).collect();
+                let push_line = |index: usize, text: &mut String| {
+                    push_csv_line(self.record(index).iter().map(|(_, value)| value), text);
+                };
+                write_csv(&header, self.count as usize, push_line, out)
             }
         })
     }
