@@ -395,7 +395,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "map.jpg",
-            "map.jpg: unknown extension; give a map *.vti, *.npy, *.npz, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.dream3d, *.h5, *.h5oina, *.raw, *.tif, *.tiff, *.png, *.ang or *.ctf",
+            "map.jpg: unknown extension; give a map *.vti, *.npy, *.npz, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.dream3d, *.h5, *.h5oina, *.raw, *.tif, *.tiff, *.png, *.ang, *.ctf, *.cpr or *.crc",
         ),
         (
             "no.vti",

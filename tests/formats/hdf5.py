@@ -59,6 +59,20 @@ with open("points.ang", "w") as file:
         number = " ".join(f"{angle:.9f}" for angle in radians[at])
         file.write(f"{number} {x[at]} {y[at]} {quality[at]} {confidence[at]} {phase[at]} 0 1\n")
 
+# HKL's pair: what DefDAP reads; the phase is no field of the head.
+with open("points.cpr", "w") as file:
+    file.write(f"[General]\nVersion=5.0\n[Job]\nMagnification=500\nxCells={columns}\nyCells={rows}\nGridDistX={step}\nGridDistY={step}\n")
+    file.write("[Acquisition Surface]\nEuler1=0\nEuler2=0\nEuler3=0\n[EDX Windows]\nCount=0\n[Phases]\nCount=2\n")
+    for number, (name, group) in enumerate([("Magnesium", 9), ("Nickel", 11)], 1):
+        file.write(f"[Phase{number}]\nStructureName={name}\nLaueGroup={group}\nSpaceGroup=0\n")
+        file.write("a=3.2\nb=3.2\nc=5.2\nalpha=90\nbeta=90\ngamma=120\n")
+    file.write("[Fields]\nCount=6\nField1=3\nField2=4\nField3=5\nField4=6\nField5=7\nField6=8\n")
+record = [("phase", "u1"), ("phi1", "<f4"), ("phi", "<f4"), ("phi2", "<f4"), ("mad", "<f4"), ("bc", "u1"), ("bs", "u1")]
+records = np.zeros(grain.size, dtype=record)
+records["phase"], records["bc"] = np.where(is_solved, phase, 0), quality
+records["phi1"], records["phi"], records["phi2"] = np.radians(along_a2).T
+records.tofile("points.crc")
+
 with h5py.File("points.h5oina", "w") as file:
     data, header = file.create_group("1/EBSD/Data"), file.create_group("1/EBSD/Header")
     data["Phase"] = np.where(is_solved, phase, 0).astype(np.uint8)

@@ -1,4 +1,4 @@
-//! Measured maps in HDF5, written by h5py.
+//! Measured maps in HDF5, written by h5py, and the same points in HKL's pair of files.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +10,8 @@ use crate::maps::refused_when_damaged;
 use crate::programs::run;
 
 const LABELS: [&str; 3] = ["labels_6.dream3d", "labels_nx.dream3d", "labels_dct.h5"];
-const POINTS: [&str; 4] = ["points.h5oina", "points_edax.h5", "points_bruker.h5", "points.dream3d"];
+const POINTS: [&str; 5] =
+    ["points.crc", "points.h5oina", "points_edax.h5", "points_bruker.h5", "points.dream3d"];
 
 /// A folder with all maps; nothing without h5py.
 fn maps(test: &str) -> Option<tempfile::TempDir> {
@@ -78,7 +79,7 @@ fn orientations_in_hdf5_are_those_of_the_text() {
 #[test]
 fn damaged_hdf5_is_read_or_refused() {
     let Some(folder) = maps("damaged_hdf5_is_read_or_refused") else { return };
-    for name in LABELS.into_iter().chain(POINTS) {
+    for name in LABELS.into_iter().chain(POINTS).chain(["points.cpr"]) {
         let refused = refused_when_damaged(&folder.path().join(name));
         assert!(refused > 40, "{name}: {refused}");
     }

@@ -7,6 +7,9 @@ use crate::{CrystalSymmetry, Orientation, Sector};
 /// How much less the scalar of another equivalent may be to count as equal: rounding is some 1e-16.
 const TIE: f64 = 1e-12;
 
+/// Cosine of 15 degrees. Rotations of a group are 60 degrees or more, so that none takes crystals that are turned by 30 degrees at most nearer to each other.
+const IS_LEAST: f64 = 0.965_925_826_289_068_3;
+
 /// The least rotation that takes one crystal to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disorientation {
@@ -54,11 +57,14 @@ impl CrystalSymmetry {
     /// Only the angle of [`Self::disorientation`], in degrees: faster.
     pub fn disorientation_angle(self, first: Orientation, second: Orientation) -> f64 {
         let between = first.raw().conjugate() * second.raw();
+        let angle = |least: glam::DQuat| 2.0 * least.xyz().length().atan2(least.w.abs()).to_degrees();
+        if between.w.abs() >= IS_LEAST {
+            return angle(between);
+        }
         let scalar = |rotation: &glam::DQuat| rotation.dot(between).abs();
         let by_scalar = |a: &&glam::DQuat, b: &&glam::DQuat| scalar(a).total_cmp(&scalar(b));
         let rotation = self.rotations().iter().max_by(by_scalar).expect("every group has the identity");
-        let least = rotation.conjugate() * between;
-        2.0 * least.xyz().length().atan2(least.w.abs()).to_degrees()
+        angle(rotation.conjugate() * between)
     }
 
     /// How far two crystals are from being twins, in degrees: turned against each other by an angle in degrees about an axis, which has components along the orthogonal axes of

@@ -17,7 +17,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf; .tif, .tiff or .png, or a folder of such slices; or, with --relax, a network: .vtp, .vtu or .vtk with two labels for each triangle, or .tess (Neper)
+    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang, .ctf or .cpr with .crc; .tif, .tiff or .png, or a folder of such slices; or, with --relax, a network: .vtp, .vtu or .vtk with two labels for each triangle, or .tess (Neper)
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 

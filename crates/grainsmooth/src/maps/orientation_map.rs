@@ -1,6 +1,7 @@
 //! Orientation maps of other programs, point by point.
 
 pub(crate) mod ang;
+pub(super) mod crc;
 pub(crate) mod ctf;
 pub(crate) mod hkl;
 

@@ -8,7 +8,7 @@ use glam::{BVec3, DVec3};
 use super::ebsd::grains::grains;
 use super::label_map::{FileMap, LabelMap, MapContent, MeasuredMap};
 use super::options::{LabelParts, MapOptions};
-use super::orientation_map::{Fault, PointList, ang, ctf};
+use super::orientation_map::{Fault, PointList, ang, crc, ctf};
 use super::stored_numbers::Source;
 use super::{hdf5, mhd, npy, npz, nrrd, png, raw, slices, tesr, tiff, vti};
 use crate::Error;
@@ -25,12 +25,14 @@ enum Content {
     Labels(fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>),
     /// Text with a line for each point.
     Orientations(fn(&str) -> Result<PointList, Fault>),
-    /// One or the other.
+    /// Packed numbers of each point.
+    Points(fn(&Source<'_>) -> Result<PointList, MapProblem>),
+    /// Labels or points.
     Either(fn(&Source<'_>, &MapOptions) -> Result<MapContent, MapProblem>),
 }
 
 /// Every format, a line for each extension.
-const FORMATS: [MapFormat; 17] = [
+const FORMATS: [MapFormat; 19] = [
     MapFormat { extension: "vti", content: Content::Labels(vti::read) },
     MapFormat { extension: "npy", content: Content::Labels(npy::read) },
     MapFormat { extension: "npz", content: Content::Labels(npz::read) },
@@ -48,6 +50,8 @@ const FORMATS: [MapFormat; 17] = [
     MapFormat { extension: "png", content: Content::Labels(png::read) },
     MapFormat { extension: "ang", content: Content::Orientations(ang::read) },
     MapFormat { extension: "ctf", content: Content::Orientations(ctf::read) },
+    MapFormat { extension: "cpr", content: Content::Points(crc::read) },
+    MapFormat { extension: "crc", content: Content::Points(crc::read) },
 ];
 
 /// Reads a map, crops it and cleans it as options say.
@@ -80,6 +84,10 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
             // Names of phases and comments may have any coding; numbers have one.
             let found = read(&String::from_utf8_lossy(&bytes()?));
             grains(&found.map_err(|(line, what)| MapProblem::Line { line, what })?, options)
+        }
+        Content::Points(read) => {
+            check_of_points(options)?;
+            grains(&read(&Source { path, bytes: &bytes()? })?, options).map_err(of_point)
         }
         Content::Either(read) => match read(&Source { path, bytes: &bytes()? }, options)? {
             MapContent::Labels(found) => {

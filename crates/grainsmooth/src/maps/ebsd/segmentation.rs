@@ -29,17 +29,21 @@ pub(super) fn segmented(
             && symmetries[first.phase].disorientation_angle(first.orientation, second.orientation)
                 <= threshold
     };
-    let joined: Vec<Vec<usize>> = (0..crystals.len())
+    let before = |place: usize| grid.neighbors(place).filter(move |other| *other < place).enumerate();
+    // A bit for each neighbour before a place.
+    let joined: Vec<u8> = (0..crystals.len())
         .into_par_iter()
         .map(|place| {
-            let Some(own) = &crystals[place] else { return Vec::new() };
-            let before = grid.neighbors(place).filter(|other| *other < place);
-            before.filter(|other| crystals[*other].as_ref().is_some_and(|other| is_one(own, other))).collect()
+            let Some(own) = &crystals[place] else { return 0 };
+            let is_joined = |other: usize| crystals[other].as_ref().is_some_and(|other| is_one(own, other));
+            before(place).filter(|(_, other)| is_joined(*other)).fold(0, |joined, (bit, _)| joined | 1 << bit)
         })
         .collect();
     let mut sets = Sets::new(crystals.len());
-    for (place, others) in joined.iter().enumerate() {
-        others.iter().for_each(|other| sets.join(place, *other));
+    for (place, joined) in joined.into_iter().enumerate().filter(|(_, joined)| *joined > 0) {
+        before(place)
+            .filter(|(bit, _)| joined >> bit & 1 == 1)
+            .for_each(|(_, other)| sets.join(place, other));
     }
     sets.numbers(|place| crystals[place].is_some())
 }
