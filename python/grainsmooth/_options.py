@@ -477,6 +477,14 @@ class MapOptions(TypedDict, total=False):
 
     Example of the command line: ``grainsmooth smooth map.vti --decimate 3``"""
 
+    fit_cells: bool
+    """Fit a power diagram instead of smooth boundaries: convex cells with the volumes of the grains, and with their centroids
+    as far as that goes
+
+    A synthetic twin of the map. The summary tells how many voxels agree.
+
+    Example of the command line: ``grainsmooth smooth map.vti --fit-cells -o twin.vtp``"""
+
     relax: Value
     """Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to
     `equilibrium`; grains keep their volumes [default: 0]

@@ -299,6 +299,42 @@ fn grains_of_a_map_that_repeats_are_whole() {
     );
 }
 
+/// Of a power diagram, voxels tell volumes and centroids well enough to find it again.
+#[test]
+fn cells_fitted_to_the_voxels_of_cells_are_these() {
+    let workplace = Workplace::new();
+    for (dimension, voxels) in [("", "32 24 20"), ("--dim 2 --box 3 2", "90 60")] {
+        workplace.run(&format!("--seeds 20 {dimension} --relax 0 -n 0 --voxels {voxels} -o a.vti"));
+        let said = workplace.run("smooth a.vti --fit-cells -o b.vtp --json-summary a.txt --stats b.json");
+        assert!(said.contains("validation  good"), "{said}");
+        workplace.command("check b.vtp").assert().success();
+        let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.txt")).unwrap();
+        let number = |key: &str| summary["fitted_cells"][key].as_f64().unwrap();
+        let share = number("agreeing_voxels") / number("voxels");
+        assert!(share > 0.98 && number("centroid_distance") < 0.01, "{share}: {said}");
+        // The network's own voxels count the same.
+        let said = workplace.command("check b.vtp --labels a.vti --json").assert().success();
+        let report: serde_json::Value = serde_json::from_slice(&said.get_output().stdout).unwrap();
+        let map = &report["files"][0]["map"];
+        let differing = map["differing_voxels"].as_f64().unwrap();
+        assert_eq!(number("voxels") - number("agreeing_voxels"), differing);
+        assert!(map["largest_volume_error"].as_f64().unwrap() < 1e-9, "{map}");
+    }
+    workplace.put("pore.npy", npy(&[4, 3], &[0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 2]));
+    for (arguments, message) in [
+        (
+            "pore.npy --exterior-label 0 --fit-cells",
+            "pore.npy: has voxels without a grain, and cells fill a box; crop the map to its grains, or leave --fit-cells out",
+        ),
+        (
+            "pore.npy --periodic x --fit-cells",
+            "pore.npy: is taken to repeat, and cells are fitted to maps that do not; leave --periodic or --fit-cells out",
+        ),
+    ] {
+        workplace.refuses(&format!("smooth {arguments}"), FAILED, message);
+    }
+}
+
 #[test]
 fn parts_of_a_label_are_one_grain_or_several() {
     let workplace = Workplace::new();

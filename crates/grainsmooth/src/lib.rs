@@ -128,6 +128,7 @@ pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, SceneColors, SceneNumbers, ScenePicture, Shading, Slice};
 pub use report::{Html, SceneReport};
 pub use run::elements_reached::ElementsReached;
+pub use run::fitted_cells::CellFit;
 pub use run::listed::{ListedCells, list_cells};
 pub use run::measured::{MapRun, smooth_map};
 pub use run::origin::{Measurement, Origin, SmoothedMap, Synthesis};

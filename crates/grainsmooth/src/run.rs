@@ -2,6 +2,7 @@
 
 pub(crate) mod elements_reached;
 pub(crate) mod failing;
+pub(crate) mod fitted_cells;
 pub(crate) mod given;
 pub(crate) mod listed;
 pub(crate) mod measured;

@@ -45,7 +45,7 @@ impl Given {
         if !LabelledFile::is_known(path) {
             return Ok(Self::Map(Box::new(read_map(path, options)?)));
         }
-        let of_maps = options.first_given().or(network.decimate.map(|_| "--decimate"));
+        let of_maps = options.first_given().or(network.first_of_maps());
         if let Some(option) = of_maps {
             return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
         }

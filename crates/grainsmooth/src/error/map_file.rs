@@ -2,6 +2,8 @@
 
 use std::io;
 
+use voronoi::volumes::VolumesError;
+
 /// Why a map of labels cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -187,6 +189,9 @@ pub enum MapProblem {
         /// Where its grains are.
         other: String,
     },
+    /// No power diagram has the volumes of the grains at their centroids.
+    #[error("cells cannot be fitted to its grains: {0}")]
+    NoCells(VolumesError),
     /// No grain is left.
     #[error(
         "has no grain of {least} or more voxels besides the exterior; lower --min-voxels, or correct --exterior-label"

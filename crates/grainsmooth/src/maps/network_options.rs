@@ -17,6 +17,14 @@ pub struct MapNetworkOptions {
     #[arg(long, value_name = "H", value_parser = not_negative, allow_negative_numbers = true)]
     pub decimate: Option<f64>,
 
+    /// Fit a power diagram instead of smooth boundaries: convex cells with the volumes of the grains, and with their centroids as far as that goes
+    ///
+    /// A synthetic twin of the map. The summary tells how many voxels agree.
+    ///
+    /// Example: grainsmooth smooth map.vti --fit-cells -o twin.vtp
+    #[arg(long, conflicts_with = "decimate")]
+    pub fit_cells: bool,
+
     /// Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to `equilibrium`; grains keep their volumes [default: 0]
     ///
     /// This moves boundaries away from where they were measured. Neighbours stay neighbours.
@@ -30,6 +38,11 @@ impl MapNetworkOptions {
     /// The relaxation asked for, if boundaries are to move.
     pub fn relaxation(&self) -> Option<Relaxation> {
         self.relaxation.filter(|relaxation| *relaxation != Relaxation::Time(0.0))
+    }
+
+    /// The first option that is given and only maps have.
+    pub fn first_of_maps(&self) -> Option<&'static str> {
+        self.decimate.map(|_| "--decimate").or_else(|| self.fit_cells.then_some("--fit-cells"))
     }
 
     /// Below how many voxels edges collapse. Lines in the plane are few.

@@ -9,6 +9,7 @@ use polycrystal::{
     herring_residual, relax, smooth_voxels, validate,
 };
 
+use super::fitted_cells::{FittedCells, fitted_cells};
 use super::given::grains_called;
 use super::origin::{Measurement, Origin, SmoothedMap};
 use super::polycrystal::Polycrystal;
@@ -62,13 +63,21 @@ pub fn smooth_map(
     let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
     progress(Stage::Network, 0, 1);
     let start = Instant::now();
-    let voxels = voxels(&measured.map)?;
-    let options = VoxelOptions {
-        junctions: Junctions::Crease,
-        shortest_edge: run.network.shortest_edge(measured.map.is_plane()),
+    let (network, points, certificate, relabelled, fit) = if run.network.fit_cells {
+        let FittedCells { network, points, fit } = fitted_cells(path, measured)?;
+        let certificate =
+            validate(&network, &points).map_err(|faults| failed(NetworkError::Invalid(faults)))?;
+        (network, points, certificate, 0, Some(fit))
+    } else {
+        let voxels = voxels(&measured.map)?;
+        let options = VoxelOptions {
+            junctions: Junctions::Crease,
+            shortest_edge: run.network.shortest_edge(measured.map.is_plane()),
+        };
+        let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
+        let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
+        (network, points, certificate, relabelled, None)
     };
-    let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
-    let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
     let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
     let measurement = Measurement {
         command_line: run.command_line,
@@ -79,6 +88,7 @@ pub fn smooth_map(
             dropped: measured.dropped,
             points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
             relabelled,
+            fit,
         }),
         cut: BVec3::FALSE,
         folds: certificate.faults.0.len(),

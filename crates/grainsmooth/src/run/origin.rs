@@ -3,6 +3,7 @@
 use glam::BVec3;
 use polycrystal::{AngleStatistics, Collapsed, Relaxed, Vanished, WeightedAngle};
 
+use super::fitted_cells::CellFit;
 use super::regularization::{Reconnected, Regularization};
 use super::tessellated::Tessellated;
 use crate::{Config, FileOptions, GrainAttributes, PointCounts};
@@ -67,4 +68,6 @@ pub struct SmoothedMap {
     pub points: Option<PointCounts>,
     /// Number of voxels that got another label, because a grain touched itself there.
     pub relabelled: usize,
+    /// How cells agree with the map, where they were fitted to it.
+    pub fit: Option<CellFit>,
 }

@@ -3,14 +3,14 @@
 use std::fmt;
 
 use crate::figures::counted::Counted;
-use crate::{Measurement, SmoothedMap};
+use crate::{CellFit, Measurement, SmoothedMap};
 
 /// Degrees of spread above which the points of a grain have hardly one orientation.
 const LARGE_SPREAD: f64 = 5.0;
 
 /// What the map was, and what was changed of it.
 pub(super) fn write_map(out: &mut fmt::Formatter<'_>, map: &SmoothedMap) -> fmt::Result {
-    let SmoothedMap { shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points } = map;
+    let SmoothedMap { shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points, fit } = map;
     match (points, nz) {
         (Some(points), _) => write!(out, "map         {points}")?,
         (None, 1) => write!(out, "map         {nx} x {ny} pixels")?,
@@ -23,7 +23,13 @@ pub(super) fn write_map(out: &mut fmt::Formatter<'_>, map: &SmoothedMap) -> fmt:
     if *relabelled > 0 {
         write!(out, "; {relabelled} got another label where a grain touched itself")?;
     }
-    writeln!(out)
+    writeln!(out)?;
+    let Some(CellFit { agreeing_voxels, voxels, centroid_distance }) = fit else { return Ok(()) };
+    writeln!(
+        out,
+        "cells       {:.2} % of the voxels lie in the cell of their label; centroids are {centroid_distance:.3} grain widths apart",
+        100.0 * *agreeing_voxels as f64 / *voxels as f64
+    )
 }
 
 /// The phases of measured grains, and how far their points are spread around their mean orientations.

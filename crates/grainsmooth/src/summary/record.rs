@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
-    AskedAndReached, ComponentShare, CurvedEdges, Divided, ElementsReached, EquivalentDiameters,
+    AskedAndReached, CellFit, ComponentShare, CurvedEdges, Divided, ElementsReached, EquivalentDiameters,
     HistogramFit, LawReached, PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached,
     TensionsReached, TetrahedronQuality, Topology, VolumeMesh,
 };
@@ -45,6 +45,8 @@ pub struct SummaryRecord {
     /// Of all grains; of phases each has its own.
     texture: Option<TextureRecord>,
     regularization: Option<&'static str>,
+    /// Where cells were fitted to a map.
+    fitted_cells: Option<CellFit>,
     regularization_fell_back: bool,
     collapsed_edges: usize,
     collapsed_boundaries: usize,
@@ -227,6 +229,7 @@ impl SummaryRecord {
                 .as_ref()
                 .map_or_else(Vec::new, |parents| parents.patterns().to_vec()),
             regularization: synthesis.map(|made| made.regularization.name()),
+            fitted_cells: polycrystal.measurement().and_then(|measured| measured.map.as_ref()?.fit),
             regularization_fell_back: synthesis
                 .is_some_and(|made| made.regularization.fell_back(&made.config)),
             collapsed_edges: synthesis.map_or(0, |made| made.collapsed.edges),
