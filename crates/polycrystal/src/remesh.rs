@@ -5,6 +5,7 @@
 //! and the certificate is asked; where it finds a fault, elements become half as large, and all begins anew.
 
 mod assembled;
+mod gradation;
 mod joints;
 mod lines;
 mod middles;

@@ -6,6 +6,7 @@ use glam::DVec3;
 use voronoi::Translation;
 
 use crate::mesh::id::id;
+use crate::remesh::gradation::{Gradation, GradedEdge};
 use crate::remesh::size_field::SizeField;
 use crate::remesh::skeleton::Line;
 use crate::remesh::torus::{Moved, Torus};
@@ -20,7 +21,7 @@ const STEPS_OF_SEGMENT: usize = 2;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DividedLine {
     /// Parts that each step of the smooth line is cut into, so that there are points enough.
-    pub(crate) parts: usize,
+    pub(crate) parts: Vec<usize>,
     /// New points, without the line's ends.
     pub(crate) points: Vec<DVec3>,
     /// The middle of each segment along the smooth line.
@@ -68,6 +69,8 @@ fn ends(line: &Line, torus: &Torus) -> [Moved<u32>; 2] {
 /// A smooth line as it is.
 struct Smooth {
     places: Vec<DVec3>,
+    /// Sizes along each step.
+    steps: Vec<GradedEdge>,
     /// At each point, how many segments of the size asked for the line has up to there.
     segments: Vec<f64>,
 }
@@ -75,47 +78,60 @@ struct Smooth {
 impl Smooth {
     fn new(line: &Line, points: &[DVec3], sizes: &SizeField) -> Self {
         let places: Vec<DVec3> = line.vertices.iter().map(|vertex| points[*vertex as usize]).collect();
+        let of_points: Vec<f64> = line.vertices.iter().map(|vertex| sizes.at(*vertex)).collect();
+        Self::of(places, &of_points, sizes.gradation)
+    }
+
+    fn of(places: Vec<DVec3>, sizes: &[f64], gradation: Gradation) -> Self {
+        let ends = places.windows(2).zip(sizes.windows(2));
+        let step = |(places, sizes): (&[DVec3], &[f64])| {
+            gradation.edge(places[0].distance(places[1]), [sizes[0], sizes[1]])
+        };
+        let steps: Vec<GradedEdge> = ends.map(step).collect();
         let mut segments = vec![0.0];
-        let mut sum = 0.0;
-        for (ends, vertices) in places.windows(2).zip(line.vertices.windows(2)) {
-            let density = 0.5 * (1.0 / sizes.at(vertices[0]) + 1.0 / sizes.at(vertices[1]));
-            sum += ends[0].distance(ends[1]) * density;
-            segments.push(sum);
+        for step in &steps {
+            segments.push(segments[segments.len() - 1] + step.segments());
         }
-        Self { places, segments }
+        Self { places, steps, segments }
     }
 
     fn total(&self) -> f64 {
         self.segments[self.segments.len() - 1]
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
     fn count(&self) -> usize {
-        (self.total().round() as usize).max(1)
+        rounded(self.total()).max(1)
     }
 
-    /// The step that a share of the line ends in, and the share of this step.
+    /// The step that a share of the line ends in, and the segments of this step up to there.
     fn at(&self, share: f64) -> (usize, f64) {
         let wanted = self.total() * share;
         let step = self.segments.partition_point(|segments| *segments < wanted).max(1) - 1;
-        (step, (wanted - self.segments[step]) / (self.segments[step + 1] - self.segments[step]))
+        (step, wanted - self.segments[step])
     }
 
-    fn place(&self, (step, share): (usize, f64)) -> DVec3 {
-        self.places[step].lerp(self.places[step + 1], share)
+    fn place(&self, (step, segments): (usize, f64)) -> DVec3 {
+        self.places[step].lerp(self.places[step + 1], self.steps[step].share(segments))
     }
 
     fn divide(&self, count: usize) -> DividedLine {
-        let steps = self.places.len() - 1;
-        let parts =
-            if steps >= STEPS_OF_SEGMENT * count { 1 } else { (STEPS_OF_SEGMENT * count).div_ceil(steps) };
-        let fine = self.in_parts(parts);
-        let last = fine.places.len() - 1;
+        let per_segment = (STEPS_OF_SEGMENT * count) as f64 / self.total();
+        let parts: Vec<usize> =
+            self.steps.iter().map(|step| rounded_up(step.segments() * per_segment).max(1)).collect();
+        // The points between parts, which are alike in segments, and how many segments there are up to each.
+        let (mut first_of_step, mut segments_at) = (Vec::with_capacity(parts.len()), vec![0.0]);
+        for ((step, before), parts) in self.steps.iter().zip(&self.segments).zip(&parts) {
+            first_of_step.push(segments_at.len() - 1);
+            let part = step.segments() / *parts as f64;
+            segments_at.extend((1..=*parts).map(|number| before + number as f64 * part));
+        }
+        let last = segments_at.len() - 1;
         let (mut points, mut staying) = (Vec::with_capacity(count - 1), vec![0]);
         for number in 1..count {
-            let (at, share) = fine.at(number as f64 / count as f64);
-            points.push(fine.place((at, share)));
-            let nearest = if share < 0.5 { at } else { at + 1 };
+            let (step, segments) = self.at(number as f64 / count as f64);
+            points.push(self.place((step, segments)));
+            let share = segments / self.steps[step].segments();
+            let nearest = first_of_step[step] + rounded(share * parts[step] as f64);
             // No two may stay at one point, and the later ones need their own too.
             let before = staying[number - 1] as usize;
             staying.push(id(nearest.clamp(before + 1, last - (count - number))));
@@ -125,45 +141,42 @@ impl Smooth {
         for point in 0..=last {
             let next = staying.partition_point(|stays| (*stays as usize) < point);
             let is_nearer_before = next > 0 && {
-                let [before, after] = [next - 1, next].map(|place| fine.segments[staying[place] as usize]);
-                fine.segments[point] - before < after - fine.segments[point]
+                let [before, after] = [next - 1, next].map(|place| segments_at[staying[place] as usize]);
+                segments_at[point] - before < after - segments_at[point]
             };
             goes_to.push(id(if is_nearer_before { next - 1 } else { next }));
         }
-        let middle = |segment: usize| fine.place(fine.at((segment as f64 + 0.5) / count as f64));
+        let middle = |segment: usize| self.place(self.at((segment as f64 + 0.5) / count as f64));
         let middles = (0..count).map(middle).collect();
         DividedLine { parts, points, middles, goes_to, staying }
     }
+}
 
-    /// The same line with each step cut into so many parts.
-    fn in_parts(&self, parts: usize) -> Self {
-        let mut fine = Self { places: vec![self.places[0]], segments: vec![0.0] };
-        for (places, segments) in self.places.windows(2).zip(self.segments.windows(2)) {
-            for part in 1..=parts {
-                let share = part as f64 / parts as f64;
-                let is_end = part == parts;
-                fine.places.push(if is_end { places[1] } else { places[0].lerp(places[1], share) });
-                fine.segments.push(segments[0] + share * (segments[1] - segments[0]));
-            }
-        }
-        fine
-    }
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
+fn rounded(number: f64) -> usize {
+    number.round() as usize
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
+fn rounded_up(number: f64) -> usize {
+    number.ceil() as usize
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn straight(steps: u32, size: f64) -> Smooth {
-        let places: Vec<DVec3> = (0..=steps).map(|step| DVec3::X * f64::from(step)).collect();
-        Smooth { segments: places.iter().map(|place| place.x / size).collect(), places }
+    fn straight(places: &[f64], size: f64) -> Smooth {
+        let places: Vec<DVec3> = places.iter().map(|x| DVec3::X * *x).collect();
+        let sizes = vec![size; places.len()];
+        Smooth::of(places, &sizes, Gradation { growth: 0.5, most: size })
     }
 
     #[test]
     fn points_stand_evenly_and_smooth_ones_go_to_the_nearest() {
-        let line = straight(10, 4.9);
+        let line = straight(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0], 4.9);
         let divided = line.divide(line.count());
-        assert_eq!(divided.parts, 1);
+        assert_eq!(divided.parts, [1; 10]);
         assert_eq!(divided.points, [DVec3::X * 5.0]);
         assert_eq!(divided.staying, [0, 5, 10]);
         assert_eq!(divided.goes_to, [0, 0, 0, 1, 1, 1, 1, 1, 2, 2, 2]);
@@ -171,10 +184,21 @@ mod tests {
 
     #[test]
     fn coarse_lines_are_cut_first() {
-        let line = straight(1, 0.25);
+        let line = straight(&[0.0, 1.0], 0.25);
         let divided = line.divide(line.count());
-        assert_eq!(divided.parts, 8);
+        assert_eq!(divided.parts, [8]);
         assert_eq!(divided.points, [0.25, 0.5, 0.75].map(|x| DVec3::X * x));
         assert_eq!(divided.staying, [0, 2, 4, 6, 8]);
+    }
+    #[test]
+    fn a_long_step_has_small_segments_only_where_sizes_are_small() {
+        let places = vec![DVec3::ZERO, DVec3::X];
+        let line = Smooth::of(places, &[0.01, 0.1], Gradation { growth: 0.5, most: 0.1 });
+        let count = line.count();
+        assert_eq!(count, 13, "ln 10 / 0.5 up to 0.18, and 0.82 / 0.1 from there");
+        let divided = line.divide(count);
+        let lengths: Vec<f64> = divided.points.windows(2).map(|ends| ends[0].distance(ends[1])).collect();
+        assert!(lengths.windows(2).all(|pair| pair[1] > 0.99 * pair[0] && pair[1] < 1.7 * pair[0]));
+        assert!((lengths[11 - 1] - 0.1).abs() < 0.01);
     }
 }

@@ -12,6 +12,7 @@ use crate::mesh::id::id;
 use crate::mesh::quadratic_triangle::QuadraticTriangle;
 use crate::mesh::volume::{Cone, volumes_of_grains};
 use crate::remesh::assembled::Assembled;
+use crate::remesh::gradation::Gradation;
 use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
 use crate::remesh::reference::Reference;
@@ -227,7 +228,7 @@ fn references(around: &Surroundings<'_>, boundaries: &[Boundary]) -> Vec<Option<
         let own = |vertex: u32| id(vertices.binary_search(&vertex).expect("all were listed"));
         let own_corners = corners().map(|corners| corners.map(own)).collect();
         let points = vertices.iter().map(|vertex| around.points[*vertex as usize]).collect();
-        Some(Reference::new(points, vec![0.0; vertices.len()], own_corners))
+        Some(Reference::new(points, vec![0.0; vertices.len()], own_corners, Gradation::default()))
     };
     (0..boundaries.len()).into_par_iter().map(reference).collect()
 }

@@ -120,7 +120,7 @@ impl Outlined {
             }
         }
         let patch = Patch::new(points.clone(), lines_of, &corners);
-        let reference = Reference::new(points, of_points, corners);
+        let reference = Reference::new(points, of_points, corners, sizes.gradation);
         let mut outlined = Self { patch, reference, near, keys: BTreeMap::new() };
         let starts = |from: u32| starts_line(around, vertices[from as usize], &steps[&from]);
         for run in runs(steps.clone(), starts) {
@@ -148,10 +148,10 @@ impl Outlined {
             points.reverse();
         }
         let mut fine = vec![points[0]];
-        for ends in points.windows(2) {
+        for (ends, parts) in points.windows(2).zip(&line.parts) {
             let (mut from, to) = (ends[0], ends[1]);
-            for part in 1..line.parts {
-                let share = 1.0 / (line.parts + 1 - part) as f64;
+            for part in 1..*parts {
+                let share = 1.0 / (parts + 1 - part) as f64;
                 let place = self.patch.place(from).lerp(self.patch.place(to), share);
                 from = self.patch.split([from, to], place, vec![number]);
                 self.near.push(self.near[to as usize]);

@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::mesh::id::id;
 use crate::mesh::nearest_point::nearest_in_triangle;
+use crate::remesh::gradation::Gradation;
 
 /// The triangles of a boundary on the finest level, by numbers of their own.
 pub(crate) struct Reference {
@@ -12,6 +13,7 @@ pub(crate) struct Reference {
     pub(crate) normals: Vec<DVec3>,
     pub(crate) sizes: Vec<f64>,
     pub(crate) triangles: Vec<[u32; 3]>,
+    gradation: Gradation,
     tree: BoxTree,
 }
 
@@ -28,7 +30,12 @@ pub(crate) struct Foot {
 }
 
 impl Reference {
-    pub(crate) fn new(points: Vec<DVec3>, sizes: Vec<f64>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(crate) fn new(
+        points: Vec<DVec3>,
+        sizes: Vec<f64>,
+        triangles: Vec<[u32; 3]>,
+        gradation: Gradation,
+    ) -> Self {
         let mut normals = vec![DVec3::ZERO; points.len()];
         for corners in &triangles {
             let [a, b, c] = corners.map(|corner| points[corner as usize]);
@@ -40,7 +47,7 @@ impl Reference {
             Bounds::around(triangles[triangle as usize].map(|corner| points[corner as usize]))
         };
         let tree = BoxTree::new((0..id(triangles.len())).collect(), bounds);
-        Self { points, normals, sizes, triangles, tree }
+        Self { points, normals, sizes, triangles, gradation, tree }
     }
 
     /// The nearest point of the surface; `near` is a triangle not far from it.
@@ -52,10 +59,10 @@ impl Reference {
         let triangle = self.tree.nearest(point, (near, squared(near)), squared);
         let (place, weights) = self.nearest_in(triangle, point);
         let corners = self.triangles[triangle as usize];
-        let mean = |of: [f64; 3]| weights[0] * of[0] + weights[1] * of[1] + weights[2] * of[2];
         let normals = corners.map(|corner| self.normals[corner as usize]);
         let normal = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
-        let size = mean(corners.map(|corner| self.sizes[corner as usize]));
+        let sizes = corners.map(|corner| (self.points[corner as usize], self.sizes[corner as usize]));
+        let size = self.gradation.size(place, sizes);
         Foot { place, normal: normal.normalize_or_zero(), size, triangle }
     }
 
@@ -74,11 +81,13 @@ mod tests {
     #[test]
     fn a_foot_has_the_size_and_normal_of_its_place() {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
-        let reference = Reference::new(points, vec![1.0, 3.0, 3.0, 1.0], vec![[0, 1, 2], [0, 2, 3]]);
+        let gradation = Gradation { growth: 1.0, most: 3.0 };
+        let triangles = vec![[0, 1, 2], [0, 2, 3]];
+        let reference = Reference::new(points, vec![1.0, 3.0, 3.0, 1.0], triangles, gradation);
         for near in 0..2 {
             let foot = reference.foot(DVec3::new(0.75, 0.5, 0.2), near);
             assert_eq!((foot.place, foot.normal), (DVec3::new(0.75, 0.5, 0.0), DVec3::Z));
-            assert_eq!((foot.size, foot.triangle), (2.5, 0));
+            assert_eq!((foot.size, foot.triangle), (1.0 + foot.place.length(), 0));
         }
     }
 }

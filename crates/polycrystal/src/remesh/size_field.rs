@@ -10,6 +10,7 @@ use subzero::{EdgeId, FaceId, TriangleMesh};
 use crate::Level;
 use crate::mesh::id::id;
 use crate::remesh::ElementSize;
+use crate::remesh::gradation::Gradation;
 use crate::remesh::parts::Parts;
 use crate::remesh::skeleton::{Occurrence, Skeleton};
 use crate::remesh::torus::Torus;
@@ -18,6 +19,7 @@ use crate::remesh::tuning::RemeshTuning;
 /// The size at each vertex of the finest level; the same at all copies of one.
 pub(crate) struct SizeField {
     sizes: Vec<f64>,
+    pub(crate) gradation: Gradation,
 }
 
 /// What sizes are found from.
@@ -38,7 +40,8 @@ impl SizeField {
         halved: &[Halved],
         tuning: &RemeshTuning,
     ) -> Self {
-        let mut field = Self { sizes: vec![asked.length; around.points.len()] };
+        let gradation = Gradation { growth: asked.growth, most: asked.length };
+        let mut field = Self { sizes: vec![asked.length; around.points.len()], gradation };
         if let Some(share) = asked.of_radius {
             field.limit_by_curvature(around, share, asked.length * tuning.smallest_share);
         }
