@@ -69,10 +69,8 @@ fn maps_that_this_program_writes_give_their_grains_back() {
     };
     let made = json("a.json");
     for name in ["a.ctf", "a.ang"] {
-        let said = workplace.run(&format!(
-            "smooth {name} -o b.vtp --stats b.json --report b.html --voxels 90 60 -o b.{}",
-            &name[2..]
-        ));
+        let said = workplace
+            .run(&format!("smooth {name} -o b.vtp --stats b.json --report b.html -o b.{}", &name[2..]));
         assert_eq!(line(&said, "map"), "90 x 60 points on a square grid, step 0.0333333, in 12 grains");
         assert!(line(&said, "spread").starts_with("0.00 degrees"), "{said}");
         let found = json("b.json");
@@ -100,7 +98,7 @@ fn maps_that_this_program_writes_give_their_grains_back() {
             }
         }
         assert_eq!(matched, 12);
-        // What is sampled again has the same angles everywhere.
+        // The map as cleaned, at its own points, has the same angles everywhere.
         let extension = &name[2..];
         let angles = |name: &str| -> Vec<f64> {
             let all = text(&workplace, name);
