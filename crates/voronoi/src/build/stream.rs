@@ -144,7 +144,7 @@ struct TiledCells {
 struct Place<'a> {
     seed: DVec3,
     sum: CellSum,
-    beyond: &'a [Generator],
+    beyond: &'a [u32],
 }
 
 impl Place<'_> {
@@ -158,9 +158,9 @@ impl Place<'_> {
 struct TileCells {
     first_seed: u32,
     sums: Vec<CellSum>,
-    /// What lies beyond the faces of the tile's cell c is `beyond[starts[c]..starts[c + 1]]`.
+    /// What lies beyond the faces of the tile's cell c is `beyond[starts[c]..starts[c + 1]]`, as [`Search::code`] has it, in order.
     starts: Vec<u32>,
-    beyond: Vec<Generator>,
+    beyond: Vec<u32>,
 }
 
 impl TiledCells {
@@ -172,7 +172,7 @@ impl TiledCells {
         for tile in &tiles {
             for (index, starts) in (tile.first_seed..).zip(tile.starts.windows(2)) {
                 if let &[a, b] = &tile.beyond[starts[0] as usize..starts[1] as usize] {
-                    flat.insert(names.ids[index as usize], [a, b].map(|generator| names.end(generator)));
+                    flat.insert(names.ids[index as usize], [a, b].map(|code| names.end_of(code)));
                 }
             }
         }
@@ -182,9 +182,8 @@ impl TiledCells {
     fn cell(&self, cell: CellId) -> SingleCell {
         let place = self.place(cell);
         let own = FaceEnd::cell(cell.0);
-        let touched = |generator: &Generator| {
-            Side::of(self.behind_flat_cells(own, self.names.end(*generator)), Translation::ZERO)
-        };
+        let touched =
+            |code: &u32| Side::of(self.behind_flat_cells(own, self.names.end_of(*code)), Translation::ZERO);
         let mut neighbors: Vec<Side> = place.beyond.iter().map(touched).collect();
         neighbors.sort_unstable();
         SingleCell { cell, seed: place.seed, measure: place.measure(), neighbors }
@@ -215,7 +214,7 @@ impl TiledCells {
 }
 
 impl TileCells {
-    fn new(tile: &mut Tile) -> Self {
+    fn new(search: &Search<'_>, tile: &mut Tile) -> Self {
         if !tile.coincident.is_empty() {
             let mut vertices = UnitedVertices::new(tile.positions.len());
             for [v, w] in tile
@@ -252,14 +251,15 @@ impl TileCells {
             sum.set_counts(starts[cell + 1], corner_counts[cell]);
             starts[cell + 1] += starts[cell];
         }
-        let mut beyond = vec![Generator::NONE; starts[count] as usize];
+        let mut beyond = vec![0; starts[count] as usize];
         let mut ends = starts.clone();
         for sides in &tile.faces {
             for (cell, generator) in of_cells(*sides) {
-                beyond[ends[cell] as usize] = generator;
+                beyond[ends[cell] as usize] = search.code(generator);
                 ends[cell] += 1;
             }
         }
+        starts.windows(2).for_each(|ends| beyond[ends[0] as usize..ends[1] as usize].sort_unstable());
         Self { first_seed, sums, starts, beyond }
     }
 }

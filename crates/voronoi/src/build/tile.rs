@@ -66,11 +66,11 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Result<Vec<Tile>, VoronoiError> 
 /// As of [`cut_tiles`].
 pub(crate) fn map_whole_cells<T: Send>(
     search: &mut Search,
-    take: impl Fn(&mut Tile) -> T + Sync,
+    take: impl Fn(&Search<'_>, &mut Tile) -> T + Sync,
 ) -> Result<Vec<T>, VoronoiError> {
     for_each_tile(search, |builder| {
         builder.tile.push_faces_of_others(builder.search, &mut builder.vertices);
-        take(&mut builder.tile)
+        take(builder.search, &mut builder.tile)
     })
 }
 

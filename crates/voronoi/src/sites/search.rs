@@ -60,9 +60,13 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// As of [`Search::end`].
-    pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
-        end(&self.ids, &self.images, generator)
+    /// What a [code](Search::code) stands for.
+    pub(crate) fn end_of(&self, code: u32) -> FaceEnd {
+        if (code as usize) < self.ids.len() {
+            FaceEnd::cell(code)
+        } else {
+            end(&self.ids, &self.images, Generator(code))
+        }
     }
 }
 
@@ -152,6 +156,11 @@ impl<'a> Search<'a> {
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
         end(&self.ids, &self.layers[self.layers.len() - 1].images, generator)
+    }
+
+    /// A generator as a number that is the user's own for a seed.
+    pub(crate) fn code(&self, generator: Generator) -> u32 {
+        self.ids.get(generator.0 as usize).copied().unwrap_or(generator.0)
     }
 
     /// The seeds in this order, and what their numbers mean to the user.
