@@ -1,4 +1,5 @@
-// Cells of random seeds by voro++: vertices, faces, neighbours and volumes of all, one thread.
+// Cells of random seeds by voro++: vertices, faces, neighbours and volumes of all, one thread. With a second argument, cells come one
+// after another, and only their volumes and neighbours are asked for.
 #include <cstdio>
 #include <cstdlib>
 #include <cmath>
@@ -21,12 +22,20 @@ int main(int argc, char** argv) {
     for (int i = 0; i < count; i++) container.put(i, seeds[3 * i], seeds[3 * i + 1], seeds[3 * i + 2]);
     voro::c_loop_all loop(container);
     voro::voronoicell_neighbor cell;
-    std::vector<std::vector<double>> vertices(count);
-    std::vector<std::vector<int>> faces(count), neighbors(count);
-    std::vector<double> volumes(count);
+    const bool stream = argc > 2;
+    const int kept = stream ? 0 : count;
+    std::vector<std::vector<double>> vertices(kept);
+    std::vector<std::vector<int>> faces(kept), neighbors(kept);
+    std::vector<double> volumes(kept);
+    std::vector<int> beyond;
     double volume = 0;
     if (loop.start()) do {
         if (!container.compute_cell(cell, loop)) continue;
+        if (stream) {
+            cell.neighbors(beyond);
+            volume += cell.volume();
+            continue;
+        }
         const int id = loop.pid();
         cell.vertices(loop.x(), loop.y(), loop.z(), vertices[id]);
         cell.face_vertices(faces[id]);

@@ -62,8 +62,16 @@ pub(crate) struct SeedGrid {
 }
 
 impl SeedGrid {
-    /// Sorts the seeds into blocks that are as close to cubes as the seeds' bounding box allows.
+    /// Sorts the seeds into blocks, and in these by coordinates.
     pub(crate) fn new(seeds: &[DVec3]) -> Self {
+        let mut grid = Self::of_ordered(seeds);
+        sort_in_blocks(seeds, &grid.starts, &mut grid.order);
+        grid
+    }
+
+    /// Sorts seeds whose order does not depend on how they were given into blocks that are as close to cubes as their bounding box
+    /// allows: in a block they stay in that order.
+    pub(crate) fn of_ordered(seeds: &[DVec3]) -> Self {
         let lower = seeds.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
@@ -88,7 +96,7 @@ impl SeedGrid {
             offsets[0][block.x] + offsets[1][block.y] + offsets[2][block.z]
         };
         let block_count = tile_counts.element_product().unsigned_abs() as usize * tile_blocks;
-        let (starts, order) = sort(seeds, &seeds.par_iter().map(block_of).collect::<Vec<u32>>(), block_count);
+        let (starts, order) = sort(&seeds.par_iter().map(block_of).collect::<Vec<u32>>(), block_count);
         let tile_starts: Vec<u32> = starts.iter().copied().step_by(tile_blocks).collect();
         let tiles =
             tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
@@ -180,8 +188,8 @@ impl SeedGrid {
     }
 }
 
-/// Sorts seeds, of which the blocks are given, by block and then by coordinates. Returns where the blocks start, and the order.
-fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u32>) {
+/// Sorts seeds, of which the blocks are given, by block, and in it as they come. Returns where the blocks start, and the order.
+fn sort(blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; block_count + 1];
     for block in blocks {
         starts[*block as usize + 1] += 1;
@@ -190,12 +198,18 @@ fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u
         starts[block + 1] += starts[block];
     }
     let mut next = starts.clone();
-    let mut order = vec![0; seeds.len()];
+    let mut order = vec![0; blocks.len()];
     for (seed, block) in (0u32..).zip(blocks) {
         let slot = &mut next[*block as usize];
         order[*slot as usize] = seed;
         *slot += 1;
     }
+    (starts, order)
+}
+
+/// Sorts the seeds of each block by their coordinates.
+fn sort_in_blocks(seeds: &[DVec3], starts: &[u32], order: &mut [u32]) {
+    let block_count = starts.len() - 1;
     // Adding zero makes -0 and 0 the same point.
     let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
     let before = |a: &u32, b: &u32| {
@@ -203,7 +217,7 @@ fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u
         let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
         by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
     };
-    let (mut rest, mut parts) = (&mut order[..], Vec::new());
+    let (mut rest, mut parts) = (order, Vec::new());
     for first in (0..block_count).step_by(BLOCKS_SORTED_AT_ONCE) {
         let starts = &starts[first..=(first + BLOCKS_SORTED_AT_ONCE).min(block_count)];
         let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
@@ -216,7 +230,6 @@ fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u
             part[from..to].sort_unstable_by(before);
         }
     });
-    (starts, order)
 }
 
 /// How many cubes, of which some number fills a box, lie along each axis; 1 along axes that are thinner than the cubes.

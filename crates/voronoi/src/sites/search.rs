@@ -123,7 +123,7 @@ impl<'a> Search<'a> {
         } else {
             let (thickness, images) = (DVec3::INFINITY, ImageTable::default());
             let indices = (0u32..).take(seeds.len()).collect();
-            let sites = search.tree(search.input_with(&images), indices, grid);
+            let sites = search.tree(&search.seeds, search.input_with(&images), indices, grid);
             search.layers.push(Layer { thickness, images, sites });
         }
         Ok(search)
@@ -208,18 +208,19 @@ impl<'a> Search<'a> {
             return Err(VoronoiError::TooManySeeds { count: self.seeds.len() + images.list().len() });
         }
         let input = self.input_with(&images);
-        let positions: Vec<DVec3> = (0..input.site_count()).map(|site| input.position(site)).collect();
-        let mut grid = SeedGrid::new(&positions);
+        let positions: Vec<DVec3> =
+            (0..input.site_count()).into_par_iter().map(|site| input.position(site)).collect();
+        let mut grid = SeedGrid::of_ordered(&positions);
         grid.relieve(&positions);
-        let sites = self.tree(input, grid.order.clone(), grid);
+        let sites = self.tree(&positions, input, grid.order.clone(), grid);
         self.layers.push(Layer { thickness, images, sites });
         Ok(())
     }
 
-    /// The sites in boxes, given their order by the blocks of a grid.
-    fn tree(&self, input: ExactInput, order: Vec<u32>, grid: SeedGrid) -> SiteTree {
+    /// The sites in boxes, given their positions and their order by the blocks of a grid.
+    fn tree(&self, positions: &[DVec3], input: ExactInput, order: Vec<u32>, grid: SeedGrid) -> SiteTree {
         let weight = self.weights.is_some().then_some(|site| input.weight(site));
-        SiteTree::new(order, grid, |site| input.position(site), weight)
+        SiteTree::new(order, grid, |site| positions[site as usize], weight)
     }
 
     /// The distance from a seed within which all sites lie that can touch or cut the part of its cell within `radius`.
