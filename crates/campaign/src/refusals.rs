@@ -82,6 +82,9 @@ pub const REFUSALS: &[Kind] = &[
     ("DeckDomain", &["--solver-deck loads a box", "leave --domain"]),
     ("ElementsInPlane", &["only boundaries in 3D are remeshed", "with --dim 2 leave"]),
     ("TouchesItself", &["touches its own image", "give more seeds"]),
+    // Lines that are to be kept however short they are, and grains far smaller than the others.
+    ("KeptShortLines", &["; without --regularize 0,", "it works"]),
+    ("TinyGrain", &["too small beside the others", "merge such cells with --min-diameter"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
     ("GrainVanished, at any time", &["shrinks to nothing by", "--min-diameter"]),

@@ -6,6 +6,9 @@ use std::fmt;
 /// (`--rng-seed 1`) one is below.
 const SMALL: f64 = 0.4;
 
+/// The same, below which its size alone is reason enough to fail: relaxation is made for diameters that spread over 1:100.
+const TINY: f64 = 1e-3;
+
 /// By how much the limit that is advised is above the grain, so that others like it go too.
 const MARGIN: f64 = 1.2;
 
@@ -25,6 +28,11 @@ pub struct FailedGrain {
 }
 
 impl FailedGrain {
+    /// Whether its size alone is reason enough to fail.
+    pub(crate) fn is_tiny(&self) -> bool {
+        self.share < TINY
+    }
+
     /// The `--min-diameter`, with two decimals, that takes this grain out, if its size is to blame.
     pub(crate) fn least_diameter(&self) -> Option<f64> {
         (self.share < SMALL).then(|| (100.0 * MARGIN * self.share).ceil() / 100.0)

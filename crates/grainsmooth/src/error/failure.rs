@@ -18,6 +18,8 @@ pub struct Failure {
     pub grain: Option<FailedGrain>,
     /// What helps where grains cannot grow freely for so long.
     pub growth: Option<Growth>,
+    /// Whether short lines were kept, and all goes well where they may go.
+    pub works_without_short_lines: bool,
     /// The grains around each line of the cells (in the plane: point) where one tension exceeds the sum of the others.
     pub without_equilibrium: Vec<Vec<u32>>,
     /// Whether grains were to have given shapes.
@@ -60,6 +62,12 @@ impl fmt::Display for Failure {
         }
         if self.has_shapes {
             return write!(out, "; give --grain-shapes a lower ratio, or another --rng-seed");
+        }
+        if self.works_without_short_lines {
+            return write!(out, "; without --regularize 0, which keeps short triple lines, it works");
+        }
+        if self.grain.is_some_and(|grain| grain.is_tiny()) {
+            write!(out, ", too small beside the others")?;
         }
         match (self.growth, self.grain.and_then(|grain| grain.least_diameter())) {
             (Some(Growth::Until(time)), _) => write!(out, "; --relax {time} works"),

@@ -18,7 +18,16 @@ impl Failure {
         });
         let dimension = cells.tessellation.domain().dimension();
         let has_shapes = cells.shapes.is_some();
-        Self { dimension, cause, grain, growth: None, without_equilibrium, has_shapes, attempts }
+        Self {
+            dimension,
+            cause,
+            grain,
+            growth: None,
+            works_without_short_lines: false,
+            without_equilibrium,
+            has_shapes,
+            attempts,
+        }
     }
 }
 
@@ -83,6 +92,14 @@ mod tests {
         let vanished = NetworkError::GrainVanished { grain: GrainId(3), time: 0.01 };
         let grows = Failure::new(vanished, Vec::new(), &cells).with_growth(Growth::Until(0.005));
         assert!(grows.to_string().ends_with(&format!("; {thin}; --relax 0.005 works")), "{grows}");
+        // A run of half a minute failed at a grain of 1.5e-5.
+        let share = |share: f64| Failure {
+            grain: Some(FailedGrain { grain: 3, seed: 3, diameter: share, share, is_smallest: false }),
+            ..Failure::new(missed(3), Vec::new(), &cells)
+        };
+        let tiny = "too small beside the others; merge such cells with --min-diameter 0.01";
+        assert!(share(1.5e-5).to_string().ends_with(tiny), "{}", share(1.5e-5));
+        assert!(!share(0.1).to_string().contains("too small"), "{}", share(0.1));
         let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
         assert_eq!(merged.merged_seeds, [3]);
         assert_eq!(merged.grains.ids, [0, 1, 2, 4, 5, 6]);

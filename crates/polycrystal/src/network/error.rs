@@ -106,7 +106,7 @@ pub enum NetworkError {
     /// A boundary is so small that rounding leaves parts of it without area (in the plane: without length):
     /// [`Tessellation::resolved`](voronoi::Tessellation::resolved) takes such out, unless it is a cell's last.
     #[error(
-        "the boundary between {} and {} is too small for double precision; remove seeds that are so close",
+        "the boundary between {} and {} is too small for double precision; remove seeds that are too close, or move those that nearly form a lattice a little",
         sides[0], sides[1]
     )]
     BoundaryTooSmall {
