@@ -43,7 +43,7 @@ impl Estimate {
                 let MeshSize { points, edges, triangles } =
                     config.regular_face_mesh().control_mesh_size(&regular);
                 let size = LevelSize { points, edges, triangles };
-                ControlMesh { size, arcs: 0, besides: voxel_bytes(config) }
+                ControlMesh { size, arcs: 0, besides: voxel_bytes(config), is_still: false }
             }
             _ => crate::run::pipeline::control_mesh(config, tessellation),
         };

@@ -6,13 +6,14 @@ use sysinfo::{MemoryRefreshKind, System};
 
 /// Bytes that a run in space holds at its peak, which is in one of two stages. Fitted to peak resident memory, in millions of bytes and brackets what
 /// comes of it: 200 grains took 91 (79) at level 3 and 209 (216) at level 4, 500 grains 183 (173) at level 3, 1000 grains 288 (284) and 327 (329) at
-/// levels 2 and 3, 2000 grains 116 (133), 320 (338), 566 (552) and 688 (653) at levels 0 to 3, 20 000 grains 5832 (6580) at level 3.
+/// levels 2 and 3, 2000 grains 116 (114), 320 (338), 566 (552) and 688 (653) at levels 0 to 3, 20 000 grains 1079 (1067) at level 0 and 5832 (6580) at level 3,
+/// 100 000 grains 4996 (5330) at level 0.
 ///
 /// The program itself ...
 const PROGRAM: u128 = 20_000_000;
 
 /// ... in relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
-const RELAXED_PER_CONTROL_EDGE: u128 = 600;
+const RELAXED_PER_CONTROL_EDGE: u128 = 500;
 const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 1250;
 const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 1700;
 
@@ -24,7 +25,12 @@ const ENERGY_LEVEL: u32 = 2;
 /// ... and for each triangle of a last level beyond: its points.
 const RELAXED_PER_LAST_TRIANGLE: u128 = 12;
 
-/// In the certificate and in writing, for each edge of the control mesh and each triangle of the last level: its points and their arrays, and the levels
+/// Where nothing moves, through level 2: for each edge of the control mesh, and each triangle of the last level if that is another. 5000 grains took 133 (123),
+/// 286 (277) and 757 (740) at levels 0 to 2, 20 000 grains 465 (439), 983 (1067) and 2854 (2951), 100 000 grains 1910 (2148) at level 0.
+const STILL_PER_CONTROL_EDGE: u128 = 200;
+const STILL_PER_TRIANGLE: u128 = 100;
+
+/// In the certificate and in writing, which take more from level 3 on, for each edge of the control mesh and each triangle of the last level: its points and their arrays, and the levels
 /// before; the last level itself follows from these.
 const WRITTEN_PER_CONTROL_EDGE: u128 = 600;
 const WRITTEN_PER_TRIANGLE: u128 = 60;
@@ -160,11 +166,13 @@ pub struct ControlMesh {
     pub arcs: u128,
     /// Bytes that are taken besides the network, for voxels that are labelled.
     pub besides: u128,
+    /// Whether boundaries stay as flat as the cells.
+    pub is_still: bool,
 }
 
 impl From<LevelSize> for ControlMesh {
     fn from(size: LevelSize) -> Self {
-        Self { size, arcs: 0, besides: 0 }
+        Self { size, arcs: 0, besides: 0, is_still: false }
     }
 }
 
@@ -194,6 +202,11 @@ impl ControlMesh {
                 (edges, of_control),
             ]);
         }
+        if self.is_still && levels <= ENERGY_LEVEL {
+            let refined = if levels == 0 { 0 } else { size.triangles };
+            let parts = [(edges, STILL_PER_CONTROL_EDGE), (refined, STILL_PER_TRIANGLE)];
+            return sum(&parts).saturating_add(PROGRAM);
+        }
         let (of_control, of_triangle) = match levels {
             0 => (RELAXED_PER_CONTROL_EDGE, 0),
             1 => (RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE_MOVED),
@@ -203,7 +216,10 @@ impl ControlMesh {
         let of_last = if levels > ENERGY_LEVEL { RELAXED_PER_LAST_TRIANGLE } else { 0 };
         let relaxed =
             sum(&[(edges, of_control), (carrying.triangles, of_triangle), (size.triangles, of_last)]);
-        let written = sum(&[(edges, WRITTEN_PER_CONTROL_EDGE), (size.triangles, WRITTEN_PER_TRIANGLE)]);
+        let written = match levels {
+            0..=ENERGY_LEVEL => 0,
+            _ => sum(&[(edges, WRITTEN_PER_CONTROL_EDGE), (size.triangles, WRITTEN_PER_TRIANGLE)]),
+        };
         relaxed.max(written).saturating_add(PROGRAM)
     }
 }
@@ -308,8 +324,12 @@ mod tests {
 
     use super::*;
 
-    const TETRAHEDRON: ControlMesh =
-        ControlMesh { size: LevelSize { points: 4, edges: 6, triangles: 4 }, arcs: 0, besides: 0 };
+    const TETRAHEDRON: ControlMesh = ControlMesh {
+        size: LevelSize { points: 4, edges: 6, triangles: 4 },
+        arcs: 0,
+        besides: 0,
+        is_still: false,
+    };
 
     #[test]
     fn sizes_are_those_of_the_refined_mesh() {
@@ -330,7 +350,7 @@ mod tests {
     #[test]
     fn arcs_have_as_many_segments_on_any_level() {
         let lines = LevelSize { points: 500, edges: 600, triangles: 0 };
-        let arcs = ControlMesh { size: lines, arcs: 300, besides: 0 };
+        let arcs = ControlMesh { size: lines, arcs: 300, besides: 0, is_still: false };
         assert_eq!(arcs.after(0), LevelSize { points: 500 + 300 * 58, edges: 300 * 60, triangles: 0 });
         assert_eq!(arcs.after(3).edges, 300 * 64);
         for level in [5, 20, u32::MAX] {

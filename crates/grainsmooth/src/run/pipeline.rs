@@ -48,7 +48,7 @@ pub fn check_expected_size(config: &Config) -> Result<(), Error> {
     // Each of two segments.
     let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
     Ok(check_levels(
-        ControlMesh { size, arcs, besides: voxel_bytes(config) },
+        ControlMesh { size, arcs, besides: voxel_bytes(config), is_still: is_still(config) },
         config.levels,
         available_memory(),
     )?)
@@ -64,12 +64,17 @@ pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> Cont
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     let size = LevelSize { points, edges, triangles };
     let besides = voxel_bytes(config);
+    let is_still = is_still(config);
     if !bends_to_arcs(config) {
-        return ControlMesh { size, arcs: 0, besides };
+        return ControlMesh { size, arcs: 0, besides, is_still };
     }
     let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
     let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
-    ControlMesh { size, arcs: inside.count() as u128, besides }
+    ControlMesh { size, arcs: inside.count() as u128, besides, is_still }
+}
+
+fn is_still(config: &Config) -> bool {
+    config.effective_relaxation() == Relaxation::Time(0.0)
 }
 
 /// Bytes that voxels take while they are labelled.
@@ -118,7 +123,13 @@ pub fn smooth_watched(
             cells = rounder;
             continue;
         }
-        let failure = Failure::new(error, attempts, &cells);
+        let mut failure = Failure::new(error, attempts, &cells);
+        if config.regularize == Some(0.0) && failure.cause.is_tangle() {
+            let shorter = Config { regularize: None, ..config.clone() };
+            let (attempts, watch) = (&mut Vec::new(), &mut |_: RelaxationStep<'_>| ());
+            let smoothed = smooth_cells(&shorter, &cells, tessellation, attempts, &mut clock, watch);
+            failure.works_without_short_lines = smoothed.is_ok();
+        }
         if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
             return Err(failure.into());
         }
