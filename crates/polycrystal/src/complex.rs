@@ -5,7 +5,7 @@ mod edge;
 mod merging;
 mod plane;
 mod reconnect;
-mod ring;
+pub(crate) mod ring;
 mod short_edges;
 mod snapshot;
 mod star;

@@ -17,10 +17,8 @@ use crate::flow::boundary_flow::{End, Flow, Grown, Stage, has_kept_volumes};
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
 
-/// Time of the flow toward equilibrium on each coarser level, in units of the mean grain size squared.
-const LONG_STEP: f64 = 0.3;
-
-/// Time of one step on the finest level that moves, in the same unit; in the plane it is the time above.
+/// Time of one step toward equilibrium on the finest level that moves, in units of the mean grain size squared; in the plane, and on all
+/// coarser levels together, it is [`TIME_OF_KEPT_TOPOLOGY`].
 const REST_STEP: f64 = 0.1;
 
 /// Most such steps.
@@ -129,7 +127,7 @@ fn relax_levels(
     relaxation.check()?;
     let (time, finest) = match relaxation {
         Relaxation::Time(time) => (time, tuning.finest_moved),
-        Relaxation::Equilibrium => (LONG_STEP, tuning.finest_balanced),
+        Relaxation::Equilibrium => (TIME_OF_KEPT_TOPOLOGY, tuning.finest_balanced),
     };
     let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     let mut points = control_points.to_vec();
@@ -183,7 +181,8 @@ fn relax_levels(
         let end = if level == last { End::Finished } else { End::Open };
         let stage = match relaxation {
             Relaxation::Equilibrium if level == last => {
-                let step_time = if is_in_space { REST_STEP / LONG_STEP * whole_time } else { whole_time };
+                let share = if is_in_space { REST_STEP / TIME_OF_KEPT_TOPOLOGY } else { 1.0 };
+                let step_time = share * whole_time;
                 Stage { step_time, steps: REST_STEPS, least_gain: Relaxation::LEAST_GAIN, end }
             }
             _ => Stage { step_time: whole_time / count as f64, steps: count, least_gain: 0.0, end },

@@ -5,11 +5,11 @@ use glam::DVec3;
 /// Share of the length of a short edge below which an edge is tiny.
 const TINY: f64 = 0.01;
 
-/// Cosine of the largest angle between neighbouring triangles of a face in the end (75 degrees): relaxation must not reach 90.
-const LARGEST_FOLD: f64 = 0.26;
+/// Cosine of the largest angle between neighbouring triangles of a face (75 degrees): neither relaxation nor later levels must reach the 90 of a fold.
+pub(crate) const LARGEST_FOLD: f64 = 0.26;
 
-/// Cosine of the largest angle between a face and one of the triangles that join its edges to its centre (60 degrees).
-const LARGEST_BEND: f64 = 0.5;
+/// Cosine of the largest angle between a face and one of the triangles that join its edges to its centres (60 degrees).
+pub(crate) const LARGEST_BEND: f64 = 0.5;
 
 /// The triangles that join the edges of a ring to its centre.
 struct Fan {

@@ -6,11 +6,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
+use crate::complex::ring::LARGEST_FOLD;
 use crate::energy::fans::Fans;
 use crate::{CellComplex, ComplexEdge};
-
-/// Cosine of the largest bend of a boundary that keeps its bulges (75 degrees): later levels must not reach 90.
-const LARGEST_BEND: f64 = 0.26;
 
 /// Turns of looking for folds; flattening one boundary may fold another, as they share lines.
 const TURNS: usize = 3;
@@ -78,7 +76,7 @@ impl Shape {
             |(fan, face): (usize, &FaceId)| fans.mean_of_corners(fan, &complex.vertices) + self.bulge(*face);
         points.par_extend(fans.faces.par_iter().enumerate().map(of_face));
         for _ in 0..TURNS {
-            let folded = fans.folded(&points, LARGEST_BEND);
+            let folded = fans.folded(&points, LARGEST_FOLD);
             for fan in &folded {
                 for slot in fans.slots_of(*fan)[..fans.rim_len(*fan)].iter().skip(1).step_by(2) {
                     let line = fans.lines[slot.point as usize - fans.vertex_count()];

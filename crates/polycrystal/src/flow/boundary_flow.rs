@@ -32,7 +32,7 @@ use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
-pub(crate) use growth::Grown;
+pub(crate) use growth::{Grown, change_of_step};
 use level_elements::{LevelElements, LevelSectors};
 pub(crate) use volumes::has_kept_volumes;
 

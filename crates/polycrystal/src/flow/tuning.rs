@@ -1,5 +1,8 @@
 //! The tuned numbers of relaxation in space.
 
+use crate::complex::ring::LARGEST_FOLD;
+use crate::energy::triangle::LARGEST_COTANGENT;
+
 /// What relaxation in space is tuned by. Lengths are in units of the feature size (the mean grain size, or a box's shorter side),
 /// times in units of the mean grain size squared.
 ///
@@ -65,9 +68,9 @@ impl Default for Tuning {
             rigid_length: 0.04,
             small_grain: 0.5,
             centering: 0.2,
-            largest_cotangent: 5.0,
+            largest_cotangent: LARGEST_COTANGENT,
             largest_turn: 0.5,
-            largest_bend: 0.26,
+            largest_bend: LARGEST_FOLD,
             widening: 10.0,
             finest_moved: 1,
             finest_balanced: 2,

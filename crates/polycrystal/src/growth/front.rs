@@ -7,6 +7,7 @@ use voronoi::Tessellation;
 use super::Vanished;
 use super::tuning::GrowthTuning;
 use crate::events::reconnection::Reconnections;
+use crate::flow::boundary_flow::change_of_step;
 use crate::flow::recipe::RelaxedCells;
 use crate::flow::relaxation::{Moving, RelaxationStep};
 use crate::{GrainId, Network, NetworkError};
@@ -14,11 +15,6 @@ use crate::{GrainId, Network, NetworkError};
 /// The first step, and the least, in units of the mean grain size squared. What fails with the least is no matter of time.
 const FIRST_STEP: f64 = 1e-3;
 const LEAST_STEP: f64 = 1e-9;
-
-/// Share of the largest error that the next step is to have, and the most that it is shorter or longer than the one before.
-const SAFETY: f64 = 0.8;
-const LEAST_CHANGE: f64 = 0.3;
-const LARGEST_CHANGE: f64 = 2.0;
 
 /// All boundaries of some grains, in the plane or in space.
 pub(super) trait Front {
@@ -119,8 +115,7 @@ pub(super) fn advance<F: Front>(
                 Ok((whole, halves)) => largest_difference(&front.volumes(whole), &front.volumes(halves)),
                 Err(_) => (f64::INFINITY, GrainId(0)),
             };
-            let change = (SAFETY * tuning.largest_error * mean / error).sqrt();
-            step_time = time * change.clamp(LEAST_CHANGE, LARGEST_CHANGE);
+            step_time = time * change_of_step(error / (tuning.largest_error * mean));
             match tried {
                 Ok((whole, halves)) if error <= tuning.largest_error * mean => {
                     break (time, front.extrapolated(&start, halves, &whole));

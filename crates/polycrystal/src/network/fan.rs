@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use crate::complex::ring::LARGEST_BEND;
 use crate::mesh::id::id;
 
 /// Smallest angle, in degrees, of a fan that is good enough.
@@ -15,9 +16,6 @@ pub(crate) const MOST_CENTERS: usize = 3;
 
 /// Factor by which one more centre has to widen the smallest angle.
 const GAIN: f64 = 1.1;
-
-/// Cosine of the largest angle between a triangle and the whole boundary (60 degrees).
-const LARGEST_BEND: f64 = 0.5;
 
 /// Fewest segments of a ring that a centre keeps or takes over: it has one neighbour more, the other centre.
 const FEWEST_SEGMENTS: usize = 2;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::fan::Fan;
 use super::{Beside, LocalArea, Place, SMALL};
+use crate::energy::triangle::LARGEST_COTANGENT;
 
 /// Most steps of descent.
 const STEPS: usize = 20;
@@ -11,10 +12,8 @@ const STEPS: usize = 20;
 /// Halvings of a step that does not lessen the area.
 const HALVINGS: usize = 10;
 
-/// Cotangents between which those of triangles count: all positive, so that each step goes down; the largest is that of 11 degrees.
+/// The least cotangent that an angle counts with: all are positive, so that each step goes down.
 pub(super) const LEAST_COTANGENT: f64 = 0.05;
-
-pub(super) const LARGEST_COTANGENT: f64 = 5.0;
 
 /// Most that a step is longer than the one before.
 const LARGEST_GROWTH: f64 = 10.0;

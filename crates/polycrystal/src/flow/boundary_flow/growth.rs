@@ -10,7 +10,8 @@ use crate::{GrainId, NetworkError};
 /// to is better by far: the rate of a ball that shrinks is then right to half a hundredth.
 const LARGEST_ERROR: f64 = 5e-3;
 
-/// Share of the largest error that the next step is to have, and the most that it is longer or shorter than the one before.
+/// Share of the largest error that the next step is to have, and the most that it is longer or shorter than the one before (Hairer, Norsett and
+/// Wanner 1993, section II.4).
 const SAFETY: f64 = 0.8;
 const LARGEST_CHANGE: f64 = 2.0;
 const LEAST_CHANGE: f64 = 0.3;
@@ -20,6 +21,11 @@ const FIRST_STEP: f64 = 0.02;
 
 /// The least step in the same unit: where it fails, a grain or a boundary is about to vanish.
 const LEAST_STEP: f64 = 1e-4;
+
+/// The factor by which the next step is longer, given the error of a step in units of the largest: steps are exact to first order.
+pub(crate) fn change_of_step(error: f64) -> f64 {
+    (SAFETY / error).sqrt().clamp(LEAST_CHANGE, LARGEST_CHANGE)
+}
 
 /// Where points are after a step, and the volumes of grains there.
 struct Trial {
@@ -64,7 +70,7 @@ impl Flow<'_> {
             let kept = self.groups.clone();
             let trial = self.try_step(&points, time);
             let error = trial.as_ref().map_or(f64::INFINITY, |trial| trial.error);
-            step_time = time * (SAFETY * LARGEST_ERROR / error).sqrt().clamp(LEAST_CHANGE, LARGEST_CHANGE);
+            step_time = time * change_of_step(error / LARGEST_ERROR);
             match trial {
                 Ok(trial) if error <= LARGEST_ERROR => {
                     passed = if is_last { whole_time } else { passed + time };
