@@ -77,7 +77,7 @@ fn stacked(
 fn last_number(name: &str) -> Option<u64> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let end = stem.rfind(|character: char| character.is_ascii_digit())? + 1;
-    let start = stem[..end].rfind(|character: char| !character.is_ascii_digit()).map_or(0, |at| at + 1);
+    let start = end - stem[..end].bytes().rev().take_while(u8::is_ascii_digit).count();
     // A longer one than any count of slices sorts by the name alone.
     stem[start..end].parse().ok()
 }
