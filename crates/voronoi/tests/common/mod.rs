@@ -20,10 +20,16 @@ pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
 }
 
 /// Volumes sum to the domain, only cells without faces are empty, no two vertices are one point, and all that
-/// [`assert_closed`] asks for.
-pub fn assert_complex(tessellation: &Tessellation) {
+/// [`assert_closed`] asks for. Cells need not be those of their seeds any more.
+#[allow(dead_code, reason = "not all tests change cells")]
+pub fn assert_changed_complex(tessellation: &Tessellation) {
     assert_vertices_differ(tessellation, None);
     assert_fills_domain(tessellation);
+}
+
+/// The same for the cells of seeds, which are also those that come one after another.
+pub fn assert_complex(tessellation: &Tessellation) {
+    assert_changed_complex(tessellation);
     assert_streams_alike(tessellation, None);
 }
 
