@@ -21,7 +21,6 @@ pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
 
 /// Volumes sum to the domain, only cells without faces are empty, no two vertices are one point, and all that
 /// [`assert_closed`] asks for. Cells need not be those of their seeds any more.
-#[allow(dead_code, reason = "not all tests change cells")]
 pub fn assert_changed_complex(tessellation: &Tessellation) {
     assert_vertices_differ(tessellation, None);
     assert_fills_domain(tessellation);
