@@ -13,7 +13,7 @@ impl TriangleMesh {
     /// One step of Loop subdivision with Loop's weights.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn loop_refine(&self) -> Result<Refinement<Self>, MeshError> {
         self.loop_refine_with(LoopWeights::Loop)
     }
@@ -21,16 +21,16 @@ impl TriangleMesh {
     /// One step of Loop subdivision with a choice of weights.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn loop_refine_with(&self, weights: LoopWeights) -> Result<Refinement<Self>, MeshError> {
         Ok(Refinement { mesh: self.refine_connectivity()?, stencils: self.loop_stencils(weights) })
     }
 
-    /// Splits each triangle into four, numbered as [`MeshCounts`] says; points of any scheme that does so follow apart, as by
+    /// Splits each triangle into four, numbered as [`MeshCounts`](crate::MeshCounts) says; points of any scheme that does so follow apart, as by
     /// [`loop_step`](Self::loop_step).
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn refine_connectivity(&self) -> Result<Self, MeshError> {
         let refined = self.counts().refined()?;
         let sharpness =
@@ -46,7 +46,7 @@ impl TriangleMesh {
         })
     }
 
-    /// The corners of a triangle of the refined mesh, numbered as [`MeshCounts`] says, without that mesh.
+    /// The corners of a triangle of the refined mesh, numbered as [`MeshCounts`](crate::MeshCounts) says, without that mesh.
     ///
     /// # Panics
     /// If the refined mesh has no such triangle.

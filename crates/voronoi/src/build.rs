@@ -9,6 +9,7 @@ mod planar_merge;
 mod planar_squares;
 pub(crate) mod stream;
 mod tile;
+mod tile_faces;
 mod tile_vertex;
 mod vertex_numbers;
 
