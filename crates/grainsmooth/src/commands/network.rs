@@ -105,7 +105,15 @@ impl Files {
         tables.chain(self.result.paths()).chain(series).collect()
     }
 
-    fn stage_tables(&self, table: CellTable<'_>, staged: &mut StagedFiles) -> Result<(), Error> {
+    fn stage_tables<'a>(
+        &self,
+        table: impl FnOnce() -> CellTable<'a>,
+        staged: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        if self.tables.is_empty() {
+            return Ok(());
+        }
+        let table = table();
         self.tables.iter().try_for_each(|output| table.stage(output, staged))
     }
 }
@@ -122,11 +130,11 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     if files.is_cells_only {
         if config.lists_cells() {
             let cells = list_cells(config, &progress)?;
-            write_together(|staged| files.stage_tables(CellTable::of_list(config, &cells), staged))?;
+            write_together(|staged| files.stage_tables(|| CellTable::of_list(config, &cells), staged))?;
             return Ok(ListedSummary(config, &cells).to_string().trim_end().to_owned());
         }
         let cells = tessellate(config, &progress)?.stretched(config);
-        write_together(|staged| files.stage_tables(CellTable::new(config, &cells), staged))?;
+        write_together(|staged| files.stage_tables(|| CellTable::new(config, &cells), staged))?;
         return Ok(CellsSummary(config, &cells).to_string().trim_end().to_owned());
     }
     check_expected_size(config)?;
@@ -148,7 +156,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     let start = Instant::now();
     write_together(|staged| {
         if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
-            files.stage_tables(CellTable::new(config, cells), staged)?;
+            files.stage_tables(|| CellTable::new(config, cells), staged)?;
         }
         files.result.stage(&polycrystal, staged)?;
         if let Some((output, series)) = &series {

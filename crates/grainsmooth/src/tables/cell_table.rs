@@ -46,12 +46,7 @@ impl<'a> CellTable<'a> {
     pub fn new(config: &Config, cells: &'a Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let measures = tessellation.cell_measures();
-        let cell = move |cell: CellId| SingleCell {
-            cell,
-            seed: tessellation.seeds()[cell.index()],
-            measure: measures[cell.index()],
-            neighbors: tessellation.neighbors(cell),
-        };
+        let cell = move |cell: CellId| SingleCell::of(tessellation, cell, measures[cell.index()]);
         Self::of(config, tessellation.cell_count(), Some(&cells.weights), &cells.grains, Box::new(cell))
     }
 

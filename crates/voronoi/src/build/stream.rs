@@ -32,6 +32,21 @@ pub struct SingleCell {
     pub neighbors: Vec<Side>,
 }
 
+impl SingleCell {
+    /// A cell of a complex, whose measure is one of [`Tessellation::cell_measures`].
+    ///
+    /// # Panics
+    /// When there is no such cell.
+    pub fn of(tessellation: &Tessellation, cell: CellId, measure: CellMeasure) -> Self {
+        Self {
+            cell,
+            seed: tessellation.seeds()[cell.index()],
+            measure,
+            neighbors: tessellation.neighbors(cell),
+        }
+    }
+}
+
 /// The cells of all seeds, one after another: see [`Tessellation::stream`].
 #[derive(Debug)]
 pub struct CellStream(Cells);
@@ -103,12 +118,9 @@ impl CellStream {
     pub fn cell(&self, cell: CellId) -> SingleCell {
         match &self.0 {
             Cells::Tiles(cells) => cells.cell(cell),
-            Cells::Whole(tessellation, measures) => SingleCell {
-                cell,
-                seed: tessellation.seeds()[cell.index()],
-                measure: measures[cell.index()],
-                neighbors: tessellation.neighbors(cell),
-            },
+            Cells::Whole(tessellation, measures) => {
+                SingleCell::of(tessellation, cell, measures[cell.index()])
+            }
         }
     }
 
