@@ -35,9 +35,6 @@ const MOST_CANDIDATES: usize = 500;
 /// Growth of the radius from one round of the search around a cell to the next: twice the volume.
 const GROWTH: f64 = 1.26;
 
-/// Share of the distance of an edge's end that is looked at in any case before it is believed to be that far.
-const LEAST_STEP: f64 = 0.25;
-
 /// Share of a radius that candidates are known to, below which all are gathered anew: single precision counts in units near the first.
 const LEAST_SHARE: f64 = 1e-3;
 
@@ -146,7 +143,7 @@ impl<'a> EdgeTracing<'a> {
             if distance <= self.radius || self.is_crowded {
                 return self.confirm(&edge, generator, at);
             }
-            self.gather(distance.min((GROWTH * self.radius).max(LEAST_STEP * distance)))?;
+            self.gather(distance.min(GROWTH * self.radius))?;
         }
     }
 
