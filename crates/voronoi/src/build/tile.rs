@@ -314,3 +314,25 @@ impl<'a> Builder<'a> {
             && self.search.input().decide(cell.0, v.planes(v.slot(cell)), w.generators[edge]).tie
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::BVec3;
+
+    use super::*;
+    use crate::Domain;
+
+    /// Edges that were believed to be as long as the box made all tiles be cut thrice, with more and more images.
+    #[test]
+    fn random_cells_of_a_periodic_box_need_the_first_images_alone() {
+        let fraction = |i: u32, k: f64| (f64::from(i) * k).fract();
+        let seed =
+            |i: u32| DVec3::new(fraction(i, 0.618_034), fraction(i * i, 0.754_878), fraction(i, 0.569_84));
+        let seeds: Vec<DVec3> = (0..20_000).map(seed).collect();
+        let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+        let mut search = Search::new(&domain, &seeds, None).expect("seeds are good");
+        let tiles = cut_tiles(&mut search).expect("few images");
+        assert!(tiles.len() > 1);
+        assert_eq!(search.layers.len(), 1);
+    }
+}
