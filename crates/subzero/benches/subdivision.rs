@@ -1,20 +1,27 @@
-//! Loop subdivision of 20 000 triangles to level 4, from scratch and for new points, and half-edge edits.
+//! Loop subdivision of 20 000 triangles to level 4, from scratch and for new points, Catmull-Clark and Doo-Sabin to level 3, and
+//! half-edge edits.
 //!
 //! `README.md` beside this file says how to run it, and what it gave.
 #![allow(missing_docs)] // criterion's macros
 
 mod sphere;
 
+use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sphere::{Random, sphere_hull, sphere_hull_along_curve};
-use subzero::{Features, HalfEdgeId, HalfEdgeMesh, LoopHierarchy, LoopWeights, TriangleMesh};
+use subzero::{
+    DooSabinWeights, Features, HalfEdgeId, HalfEdgeMesh, LoopHierarchy, LoopWeights, PolygonMesh,
+    TriangleMesh,
+};
 
 const POINTS: u32 = 10_002;
 const LEVELS: usize = 4;
+/// Of polygons.
+const POLYGON_LEVELS: usize = 3;
 /// Edits of each kind in one round, on 320 000 triangles.
 const EDITS: usize = 20_000;
 
@@ -47,6 +54,50 @@ fn from_scratch(c: &mut Criterion) {
                         .expect("a small mesh")
                 };
                 b.iter_with_large_drop(|| pool.install(run));
+            });
+        }
+    }
+}
+
+/// Refines triangles and their points, and counts the faces that come out.
+type Refine = fn(&[Vec<u32>], &[DVec3]) -> usize;
+
+fn catmull_clark(triangles: &[Vec<u32>], points: &[DVec3]) -> usize {
+    let mut mesh = polygon_mesh(points.len(), triangles);
+    let mut points = points.to_vec();
+    for _ in 1..POLYGON_LEVELS {
+        points = mesh.catmull_clark_step(&points);
+        mesh = mesh.catmull_clark_connectivity().expect("a small mesh");
+    }
+    points = mesh.catmull_clark_step(&points);
+    black_box((mesh.catmull_clark_quads().expect("a small mesh"), points)).0.len()
+}
+
+fn doo_sabin(triangles: &[Vec<u32>], points: &[DVec3]) -> usize {
+    let mut mesh = polygon_mesh(points.len(), triangles);
+    let mut points = points.to_vec();
+    for _ in 0..POLYGON_LEVELS {
+        points = mesh.doo_sabin_step(&points, DooSabinWeights::DooSabin);
+        mesh = mesh.doo_sabin_connectivity().expect("a small mesh");
+    }
+    black_box((mesh, points)).0.face_count()
+}
+
+fn polygon_mesh(points: usize, faces: &[Vec<u32>]) -> PolygonMesh {
+    PolygonMesh::new(points, faces, &Features::default()).expect("the mesh is good")
+}
+
+fn polygons(c: &mut Criterion) {
+    let mut group = c.benchmark_group("polygons to level 3 from scratch");
+    let (triangles, points) = sphere_hull_along_curve(POINTS);
+    let triangles: Vec<Vec<u32>> = triangles.iter().map(|triangle| triangle.to_vec()).collect();
+    let schemes: [(&str, Refine); 2] = [("Catmull-Clark", catmull_clark), ("Doo-Sabin", doo_sabin)];
+    for (name, refined) in schemes {
+        group.throughput(Throughput::Elements(refined(&triangles, &points) as u64));
+        for threads in [1, 2] {
+            let pool = pool(threads);
+            group.bench_function(BenchmarkId::new(name, threads), |b| {
+                b.iter(|| pool.install(|| refined(&triangles, &points)));
             });
         }
     }
@@ -124,6 +175,6 @@ fn edits(c: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).measurement_time(Duration::from_secs(4));
-    targets = from_scratch, new_points, tables, edits
+    targets = from_scratch, polygons, new_points, tables, edits
 }
 criterion_main!(benches);

@@ -8,7 +8,10 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
-use crate::{EdgeId, FaceId, MeshError, PolygonMesh, Refinement, StencilTable};
+use crate::{EdgeId, FaceId, MeshError, Point, PolygonMesh, Refinement, StencilTable, large_vec};
+
+/// Half-edges that one task takes.
+const PER_TASK: usize = 2048;
 
 /// How a new vertex averages the corners of its face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,16 +73,52 @@ impl PolygonMesh {
     /// [`MeshError::ValenceTwo`] names an inner vertex with two edges, whose face would have two corners;
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.
     pub fn doo_sabin_refine(&self, weights: DooSabinWeights) -> Result<Refinement<Self>, MeshError> {
-        check_size("half-edges", self.corners.len().saturating_mul(8))?;
+        let masks = self.doo_sabin_masks(weights);
         let stencils = StencilTable::from_stencils(self.corners.len(), |h, stencil| {
-            let corners = self.face(FaceId(self.faces_of[h as usize]));
-            let own = (h - self.face_starts[self.faces_of[h as usize] as usize]) as usize;
-            for (i, &corner) in corners.iter().enumerate() {
-                stencil
-                    .add(corner, weights.of_corner((i + corners.len() - own) % corners.len(), corners.len()));
-            }
+            self.doo_sabin_stencil(h, &masks).for_each(|(corner, weight)| stencil.add(corner, weight));
         });
         Ok(Refinement { mesh: self.doo_sabin_connectivity()?, stencils })
+    }
+
+    /// The points one level on: bit for bit what the stencils of [`doo_sabin_refine`](Self::doo_sabin_refine) make of `points`, without the
+    /// memory that these take.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn doo_sabin_step<P: Point>(&self, points: &[P], weights: DooSabinWeights) -> Vec<P> {
+        let masks = self.doo_sabin_masks(weights);
+        let mut refined = large_vec::zeros(self.corners.len());
+        refined.par_iter_mut().with_min_len(PER_TASK).enumerate().for_each(|(h, new)| {
+            *new = self
+                .doo_sabin_stencil(id(h), &masks)
+                .fold(P::zero(), |sum, (corner, weight)| sum.add_scaled(points[corner as usize], weight));
+        });
+        refined
+    }
+
+    /// By number of corners of a face, as far as the mesh has such: the weights of a corner and of those after it.
+    fn doo_sabin_masks(&self, weights: DooSabinWeights) -> Vec<Vec<f64>> {
+        let mut masks: Vec<Vec<f64>> = Vec::new();
+        for starts in self.face_starts.windows(2) {
+            let corners = (starts[1] - starts[0]) as usize;
+            if corners >= masks.len() {
+                masks.resize(corners + 1, Vec::new());
+            }
+            if masks[corners].is_empty() {
+                masks[corners] = (0..corners).map(|offset| weights.of_corner(offset, corners)).collect();
+            }
+        }
+        masks
+    }
+
+    /// The corners of the face of a half-edge, and what each of them counts at the half-edge's new vertex.
+    #[inline]
+    fn doo_sabin_stencil(&self, h: u32, masks: &[Vec<f64>]) -> impl Iterator<Item = (u32, f64)> {
+        let face = self.faces_of[h as usize];
+        let own = (h - self.face_starts[face as usize]) as usize;
+        let corners = self.face(FaceId(face));
+        let (from_own, before_own) = masks[corners.len()].split_at(corners.len() - own);
+        corners.iter().copied().zip(before_own.iter().chain(from_own).copied())
     }
 
     /// Limit points and tangents at the centres of all faces; the same for both kinds of weights.
@@ -98,7 +137,12 @@ impl PolygonMesh {
         DooSabinLimits { positions, tangents }
     }
 
-    fn doo_sabin_connectivity(&self) -> Result<Self, MeshError> {
+    /// The mesh of [`doo_sabin_refine`](Self::doo_sabin_refine) alone; its points follow apart, by [`doo_sabin_step`](Self::doo_sabin_step).
+    ///
+    /// # Errors
+    /// As of [`doo_sabin_refine`](Self::doo_sabin_refine).
+    pub fn doo_sabin_connectivity(&self) -> Result<Self, MeshError> {
+        check_size("half-edges", self.corners.len().saturating_mul(8))?;
         let new = self.doo_sabin_faces()?;
         let half_edges = id(self.corners.len());
         let first_around = half_edges + 4 * id(new.edges.len());

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::base_rings::BaseRings;
 use crate::ids::{id, next, prev};
 use crate::prefetch::prefetch;
+use crate::stencil::sum_stencil;
 use crate::{EdgeId, FaceId, LoopWeights, Point, TriangleMesh, VertexParent, VertexRule};
 
 /// Points or parents that one task takes.
@@ -406,10 +407,4 @@ fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
     let ends = a.add_scaled(b, 1.0);
     let apexes = c.add_scaled(d, 1.0);
     ends.scaled(0.375).add_scaled(apexes, 0.125)
-}
-
-fn sum_stencil<P: Point>(points: &[P], stencil: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {
-    let mut sum = P::zero();
-    stencil(&mut |point, weight| sum = sum.add_scaled(points[point as usize], weight));
-    sum
 }

@@ -59,6 +59,13 @@ pub(crate) fn merge(stencil: &mut Vec<(u32, f64)>) {
     });
 }
 
+/// What a stencil that is handed out entry by entry makes of some points.
+pub(crate) fn sum_stencil<P: Point>(points: &[P], stencil: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {
+    let mut sum = P::zero();
+    stencil(&mut |point, weight| sum = sum.add_scaled(points[point as usize], weight));
+    sum
+}
+
 impl StencilTable {
     /// Builds `count` stencils in parallel: `write(i, writer)` adds the entries of stencil i.
     pub(crate) fn from_stencils(count: usize, write: impl Fn(u32, &mut StencilWriter) + Sync) -> Self {

@@ -125,6 +125,29 @@ proptest! {
     }
 
     #[test]
+    fn points_of_polygons_without_tables_are_those_of_the_tables(example in examples(0.0..3.0_f32)) {
+        let (mut mesh, mut points) = (example.polygon_mesh(), example.points.clone());
+        for _ in 0..3 {
+            let refined = mesh.catmull_clark_refine().unwrap();
+            let expected = refined.stencils.apply(&points);
+            let quads: Vec<[u32; 4]> = mesh.catmull_clark_quads().unwrap();
+            prop_assert!(refined.mesh.faces().eq(quads.iter().map(|quad| &quad[..])));
+            points = mesh.catmull_clark_step(&points);
+            for (point, expected) in points.iter().zip(&expected) {
+                prop_assert!(point.distance(*expected) < 1e-13, "{point} instead of {expected}");
+            }
+            mesh = refined.mesh;
+        }
+        let (mut mesh, mut points) = (example.polygon_mesh(), example.points.clone());
+        for weights in [DooSabinWeights::DooSabin, DooSabinWeights::Means, DooSabinWeights::DooSabin] {
+            let refined = mesh.doo_sabin_refine(weights).unwrap();
+            prop_assert_eq!(refined.stencils.apply(&points), mesh.doo_sabin_step(&points, weights));
+            points = mesh.doo_sabin_step(&points, weights);
+            mesh = refined.mesh;
+        }
+    }
+
+    #[test]
     fn affine_maps_commute_with_subdivision(
         example in examples(0.0..11.0_f32),
         entries in prop::array::uniform9(-2.0..2.0_f64),
