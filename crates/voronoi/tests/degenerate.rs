@@ -103,6 +103,20 @@ fn seeds_on_a_line_in_a_plane_and_on_a_sphere() {
     }
 }
 
+/// All bisectors of the shell meet in the seed at the corner: from there, nothing is near enough to tell how far to look for an edge's end.
+#[test]
+fn a_seed_in_the_corner_and_seeds_on_a_shell_around_it() {
+    let on_shell = |seed: &DVec3| 0.9 * seed.normalize();
+    let mut seeds: Vec<DVec3> = random_seeds(1000, 3).iter().map(on_shell).collect();
+    seeds.push(DVec3::ZERO);
+    let tessellation = tessellate(&seeds);
+    assert_closed(&tessellation);
+    // Around the corner lies an eighth of nearly a ball of half the radius.
+    let volume = tessellation.cell_measures()[1000].volume;
+    let ball = std::f64::consts::PI / 6.0 * 0.45f64.powi(3);
+    assert!(volume > ball && volume < 1.1 * ball, "{volume} around the corner, {ball} in the ball");
+}
+
 #[test]
 fn exactly_cospherical_seeds_meet_in_one_vertex() {
     // The points of the form (±3, ±4, 0) / 16 and their permutations lie on one sphere, exactly representable.

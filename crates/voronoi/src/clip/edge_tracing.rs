@@ -35,7 +35,8 @@ const MOST_CANDIDATES: usize = 500;
 /// Growth of the radius from one round of the search around a cell to the next: twice the volume.
 const GROWTH: f64 = 1.26;
 
-/// Share of a radius that candidates are known to, below which all are gathered anew: single precision counts in units near the first.
+/// Share of a radius that candidates are known to, below which all are gathered anew: single precision counts in units near the first. So much
+/// of the distance of an edge's end is looked at in any case.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// A vertex of a cell.
@@ -143,7 +144,7 @@ impl<'a> EdgeTracing<'a> {
             if distance <= self.radius || self.is_crowded {
                 return self.confirm(&edge, generator, at);
             }
-            self.gather(distance.min(GROWTH * self.radius))?;
+            self.gather(distance.min((GROWTH * self.radius).max(LEAST_SHARE * distance)))?;
         }
     }
 
