@@ -2,9 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::DVec3;
-use grainsmooth::vtk::{
-    Array, Cells, Each, FieldEntry, FieldValue, PolyData, Tuples, Values, VtkEncoding, VtkFormat,
-};
+use grainsmooth::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat};
 use grainsmooth::vtk::{field_text, inlined, write_vtk};
 use vtkio::model::{Attribute, Attributes, CellType, DataSet, IOBuffer, Piece, VertexNumbers, Vtk};
 
@@ -26,10 +24,10 @@ fn surface(cells: Cells<'_>) -> PolyData<'_> {
     PolyData {
         points: &POINTS,
         cells,
-        point_arrays: vec![Array { name: "NodeTypes", values: Values::Int8(&NODE_TYPES) }],
+        point_arrays: vec![Array { name: "NodeTypes", values: Values::slice(&NODE_TYPES) }],
         cell_arrays: vec![
-            Array { name: "FaceLabels", values: Values::Int32Pairs(&LABELS[..cells.len()]) },
-            Array { name: "BoundaryId", values: Values::Int32(&BOUNDARIES[..cells.len()]) },
+            Array { name: "FaceLabels", values: Values::slice(&LABELS[..cells.len()]) },
+            Array { name: "BoundaryId", values: Values::slice(&BOUNDARIES[..cells.len()]) },
         ],
         field: vec![
             FieldEntry { name: "CommandLine", value: FieldValue::Text(COMMAND.to_owned()) },
@@ -171,7 +169,7 @@ fn long_arrays_come_back_compressed() {
     for count in [1 << 14, 1 << 15, (1 << 16) + 3] {
         let values: Vec<f64> = (0..count).map(|i| f64::from(i).sqrt()).collect();
         let points: Vec<DVec3> = values.iter().map(|value| DVec3::splat(*value)).collect();
-        let array = Array { name: "Roots", values: Values::Float64(&values) };
+        let array = Array { name: "Roots", values: Values::slice(&values) };
         let data = PolyData {
             points: &points,
             cells: Cells::Triangles(&TRIANGLES),
@@ -240,15 +238,12 @@ fn computed_values_and_tuples_come_back() {
     let data = PolyData {
         points: &POINTS,
         cells: Cells::Triangles(&TRIANGLES),
-        point_arrays: vec![Array {
-            name: "NodeTypes",
-            values: Values::Int8Of(Each { count: 5, value: &kind }),
-        }],
+        point_arrays: vec![Array { name: "NodeTypes", values: Values::each(5, kind) }],
         cell_arrays: vec![
-            Array { name: "FaceLabels", values: Values::Int32PairsOf(Each { count: 3, value: &label }) },
-            Array { name: "BoundaryId", values: Values::Int32Of(Each { count: 3, value: &id }) },
-            Array { name: "Size", values: Values::Float64Of(Each { count: 3, value: &size }) },
-            Array { name: "Sides", values: Values::Int32Tuples(Tuples { components: 3, values: &three }) },
+            Array { name: "FaceLabels", values: Values::each(3, label) },
+            Array { name: "BoundaryId", values: Values::each(3, id) },
+            Array { name: "Size", values: Values::each(3, size) },
+            Array { name: "Sides", values: Values::tuples(3, &three) },
         ],
         field: vec![],
     };
@@ -306,7 +301,7 @@ fn number_of_threads_does_not_change_the_file() {
 #[should_panic(expected = "cell array BoundaryId")]
 fn array_of_another_length_is_refused() {
     let mut data = surface(Cells::Triangles(&TRIANGLES));
-    data.cell_arrays[1].values = Values::Int32(&BOUNDARIES[..2]);
+    data.cell_arrays[1].values = Values::slice(&BOUNDARIES[..2]);
     bytes(&data, VtkFormat::Vtp);
 }
 
@@ -327,7 +322,7 @@ fn vectors_come_back() {
     let data = PolyData {
         points: &POINTS,
         cells: Cells::Triangles(&TRIANGLES),
-        point_arrays: vec![Array { name: "Normals", values: Values::Vectors(&POINTS) }],
+        point_arrays: vec![Array { name: "Normals", values: Values::slice(&POINTS) }],
         cell_arrays: vec![],
         field: vec![],
     };

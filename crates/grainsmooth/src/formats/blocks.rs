@@ -15,12 +15,12 @@ use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
 use super::vtk::COMPRESSED;
 use crate::files::output::OutputPath;
-use crate::formats::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::formats::measured_arrays::{CURVATURES, MeasuredArrays};
 use crate::formats::network::{boundary_polylines, triangles};
 use crate::memory::LevelSize;
 use crate::names::{NUMBER_OF_GRAINS, SEED_ID};
-use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
-use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
+use crate::vtk::{Array, Cells, DataArray, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{PieceData, PieceSize, PieceValues, write_pieces};
 use crate::{Error, Polycrystal, StagedFiles};
 
 /// Stands in the arrays `Sides` where fewer sides meet than elsewhere.
@@ -120,42 +120,37 @@ impl Polycrystal {
             .collect();
         // Points are fewer than 2^31: each has an edge of two directions with a 32-bit id.
         let point_ids = |piece: usize| ids(piece).into_iter().map(u32::cast_signed).collect();
-        let grain_counts = |piece: usize| self.grain_counts(&ids(piece));
         let normals = |piece: usize| {
             let ids = ids(piece);
             normals(&points_of(&ids), &triangles_of(piece, &ids))
         };
-        let labels = |piece: usize| names.labels(boundary_of(piece));
         let boundary_id = |piece: usize| surface.parts[piece].boundary.0.cast_signed();
         let of_parts: Vec<BoundaryId> = surface.parts.iter().map(|part| part.boundary).collect();
-        let of_parts = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&of_parts));
-        let curvatures = |piece: usize, which: usize| {
-            measured.map_or_else(Vec::new, |all| all.curvatures_at(&ids(piece)).single.swap_remove(which).1)
-        };
-        let (mean, gaussian) = (|piece: usize| curvatures(piece, 0), |piece: usize| curvatures(piece, 1));
+        let of_parts = measured.map_or_else(Vec::new, |all| all.of_cells(&of_parts));
+        let boundary_tuples = self.boundary_tuples();
         let mut data = PieceData {
             sizes: &sizes,
             points: &|piece| points_of(&ids(piece)),
             triangles: &|piece| triangles_of(piece, &ids(piece)),
             point_arrays: vec![
-                ("Normals", PieceVectors::Vectors(&normals)),
-                ("PointId", PieceVectors::Int32(&point_ids)),
-                (NUMBER_OF_GRAINS, PieceVectors::UInt8(&grain_counts)),
+                PieceValues::at_points("Normals", normals),
+                PieceValues::at_points("PointId", point_ids),
+                PieceValues::at_points(NUMBER_OF_GRAINS, |piece| self.grain_counts(&ids(piece))),
             ],
             cell_arrays: vec![
-                (names.sides(), PieceValue::Int32Pair(&labels)),
-                ("BoundaryId", PieceValue::Int32(&boundary_id)),
+                PieceValues::each(names.sides(), |piece| names.labels(boundary_of(piece))),
+                PieceValues::each("BoundaryId", boundary_id),
             ],
             field: self.field(),
         };
-        let boundary_tuples = self.boundary_tuples();
         let boundary = |piece: usize| Some(surface.parts[piece].boundary.index());
-        data.cell_arrays
-            .extend(boundary_tuples.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &boundary))));
-        data.cell_arrays.extend(measured_pieces(&of_parts));
-        if measured.is_some() {
-            data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
-            data.point_arrays.push(("GaussianCurvature", PieceVectors::Float64(&gaussian)));
+        data.cell_arrays.extend(boundary_tuples.iter().map(|tuples| PieceValues::of_items(tuples, boundary)));
+        data.cell_arrays.extend(of_parts.iter().map(PieceValues::of_data));
+        for (place, name) in CURVATURES.into_iter().enumerate().filter(|_| measured.is_some()) {
+            let at = move |piece: usize| {
+                measured.map_or_else(Vec::new, |all| all.curvature_at(place, &ids(piece)))
+            };
+            data.point_arrays.push(PieceValues::at_points(name, at));
         }
         write_pieces(&data, self.file().encoding, out)
     }
@@ -178,32 +173,27 @@ impl Polycrystal {
             (size, GrainMeasure::of(&grain))
         });
         let (sizes, measures): (Vec<PieceSize>, Vec<GrainMeasure>) = found.unzip();
-        let name = |number: usize| names.number(id(number));
-        let volume = |number: usize| measures[number].volume;
-        let area = |number: usize| measures[number].area;
-        let neighbors = |number: usize| measures[number].neighbors;
-        let sphericity = |number: usize| measures[number].sphericity;
         let seed = |number: usize| self.grains().ids[number].cast_signed();
         let numbers: Vec<usize> = (0..parts.len()).collect();
-        let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
+        let of_grains = measured.map_or_else(Vec::new, |all| all.of_grains(&numbers));
+        let tuples = self.grain_tuples();
         let mut data = PieceData {
             sizes: &sizes,
             points: &|number| grain(number).points.into_owned(),
             triangles: &|number| grain(number).triangles().collect(),
             point_arrays: Vec::new(),
             cell_arrays: vec![
-                (names.grain(), PieceValue::Int32(&name)),
-                (SEED_ID, PieceValue::Int32(&seed)),
-                ("Volume", PieceValue::Float64(&volume)),
-                ("Area", PieceValue::Float64(&area)),
-                ("Neighbors", PieceValue::Int32(&neighbors)),
-                ("Sphericity", PieceValue::Float64(&sphericity)),
+                PieceValues::each(names.grain(), |number| names.number(id(number))),
+                PieceValues::each(SEED_ID, seed),
+                PieceValues::each("Volume", |number| measures[number].volume),
+                PieceValues::each("Area", |number| measures[number].area),
+                PieceValues::each("Neighbors", |number| measures[number].neighbors),
+                PieceValues::each("Sphericity", |number| measures[number].sphericity),
             ],
             field: self.field(),
         };
-        let tuples = self.grain_tuples();
-        data.cell_arrays.extend(tuples.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &Some))));
-        data.cell_arrays.extend(measured_pieces(&of_grains));
+        data.cell_arrays.extend(tuples.iter().map(|tuples| PieceValues::of_items(tuples, Some)));
+        data.cell_arrays.extend(of_grains.iter().map(PieceValues::of_data));
         write_pieces(&data, self.file().encoding, out)
     }
 
@@ -226,16 +216,16 @@ impl Polycrystal {
             lines.iter().map(|(line, _)| line.points.iter().map(renumbered).collect()).collect();
         let sides = self.side_table(lines.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let polylines = lines.iter().map(|(line, _)| &line.points[..]);
-        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_lines(polylines));
+        let of_lines = measured.map_or_else(Vec::new, |all| all.of_lines(polylines));
         let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
-            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
+            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
             field: self.field(),
         };
-        data.cell_arrays.extend(of_lines.arrays());
+        data.cell_arrays.extend(of_lines.iter().map(DataArray::array));
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
@@ -251,16 +241,16 @@ impl Polycrystal {
         let sides = self.side_table(points.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
         let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
-        let of_points = measured.map_or_else(NumberArrays::default, |all| all.of_quadruple_points(&ids));
+        let of_points = measured.map_or_else(Vec::new, |all| all.of_quadruple_points(&ids));
         let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
+            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
             field: self.field(),
         };
-        data.cell_arrays.extend(of_points.arrays());
+        data.cell_arrays.extend(of_points.iter().map(DataArray::array));
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
@@ -332,8 +322,8 @@ pub(super) struct SideTable {
 }
 
 impl SideTable {
-    pub(super) fn tuples(&self) -> Tuples<'_> {
-        Tuples { components: self.components, values: &self.numbers }
+    pub(super) fn values(&self) -> Values<'_> {
+        Values::tuples(self.components, &self.numbers)
     }
 }
 
@@ -355,12 +345,6 @@ fn normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
         }
     }
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
-}
-
-/// What is measured of each piece.
-fn measured_pieces(arrays: &NumberArrays) -> impl Iterator<Item = (&'static str, PieceValue<'_>)> {
-    let single = arrays.single.iter().map(|(name, values)| (*name, PieceValue::Float64s(values)));
-    single.chain(arrays.pairs.iter().map(|(name, pairs)| (*name, PieceValue::Float64Pairs(pairs))))
 }
 
 /// A number of points or grains as an id.

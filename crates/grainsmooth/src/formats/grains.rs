@@ -10,7 +10,7 @@ use super::format::GrainSurface;
 use super::surface::Surface;
 use crate::FileOptions;
 use crate::names::SEED_ID;
-use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,34 +54,27 @@ pub(super) fn write_vtk_grain(file: &GrainSurface<'_>, out: &mut dyn Write) -> i
     let parts: Vec<_> = of_triangle.collect();
     let GrainMeasure { volume, area, neighbors, sphericity } = GrainMeasure::of(surface);
     let count = triangles.len();
-    let grain = |index: usize| names.side_number(parts[index].sides[0]);
-    let beyond = |index: usize| names.side_number(parts[index].sides[1]);
+    let side = |index: usize, side: usize| names.side_number(parts[index].sides[side]);
     let boundary_id = |index: usize| parts[index].boundary.0.cast_signed();
-    let (volume, area, sphericity) = (|_| volume, |_| area, |_| sphericity);
-    let (neighbors, seed) = (|_| neighbors, |_| seed);
-    let doubles = |value| Values::Float64Of(Each { count, value });
-    let integers = |value| Values::Int32Of(Each { count, value });
-    let mut data = PolyData {
+    let mut cell_arrays = vec![
+        Array { name: names.grain(), values: Values::each(count, |index| side(index, 0)) },
+        Array { name: SEED_ID, values: Values::each(count, |_| seed) },
+        Array { name: "Beyond", values: Values::each(count, |index| side(index, 1)) },
+        Array { name: "BoundaryId", values: Values::each(count, boundary_id) },
+        Array { name: "Volume", values: Values::each(count, |_| volume) },
+        Array { name: "Area", values: Values::each(count, |_| area) },
+        Array { name: "Neighbors", values: Values::each(count, |_| neighbors) },
+        Array { name: "Sphericity", values: Values::each(count, |_| sphericity) },
+    ];
+    let of_grain =
+        |_| surface.parts.first().and_then(|part| part.sides[0].grain()).map(|grain| grain.index());
+    cell_arrays.extend(tuples.iter().map(|tuples| tuples.of_cells(count, of_grain)));
+    let data = PolyData {
         points: &surface.points,
         cells: Cells::Triangles(&triangles),
         point_arrays: Vec::new(),
-        cell_arrays: vec![
-            Array { name: names.grain(), values: integers(&grain) },
-            Array { name: SEED_ID, values: integers(&seed) },
-            Array { name: "Beyond", values: integers(&beyond) },
-            Array { name: "BoundaryId", values: integers(&boundary_id) },
-            Array { name: "Volume", values: doubles(&volume) },
-            Array { name: "Area", values: doubles(&area) },
-            Array { name: "Neighbors", values: integers(&neighbors) },
-            Array { name: "Sphericity", values: doubles(&sphericity) },
-        ],
+        cell_arrays,
         field: polycrystal.field(),
     };
-    let of_grain =
-        |_| surface.parts.first().and_then(|part| part.sides[0].grain()).map(|grain| grain.index());
-    data.cell_arrays.extend(tuples.iter().map(|tuples| {
-        let items = Items { tuples, count, item: &of_grain };
-        Array { name: tuples.name, values: Values::Items(items) }
-    }));
     write_vtk(&data, VtkFormat::Vtp, encoding, out)
 }

@@ -1,12 +1,13 @@
 //! What is measured of a network as arrays of a VTK file.
 
 use polycrystal::{
-    Boundary, BoundaryId, Elements, GrainId, Measures, PointCurvature, QuadruplePointMeasures, Side, Surface,
-    TripleLineMeasures, point_curvatures, point_dihedral_angles,
+    Boundary, BoundaryId, Elements, GrainId, GrainMeasures, Measures, PlaneMeasures, PointCurvature,
+    QuadruplePointMeasures, Side, SpaceMeasures, Surface, TripleLineMeasures, point_curvatures,
+    point_dihedral_angles,
 };
 
 use crate::Polycrystal;
-use crate::vtk::{Array, Cells, Values};
+use crate::vtk::{Cells, DataArray};
 
 /// Measures by the numbers that a file's cells and points have. What is not defined is NaN.
 pub(crate) struct MeasuredArrays<'a> {
@@ -18,22 +19,8 @@ pub(crate) struct MeasuredArrays<'a> {
     boundaries: Vec<usize>,
 }
 
-/// Arrays of numbers.
-#[derive(Default)]
-pub(crate) struct NumberArrays {
-    pub(crate) single: Vec<(&'static str, Vec<f64>)>,
-    pub(crate) pairs: Vec<(&'static str, Vec<[f64; 2]>)>,
-}
-
-impl NumberArrays {
-    /// The arrays for a file.
-    pub(crate) fn arrays(&self) -> impl Iterator<Item = Array<'_>> {
-        let single = self.single.iter().map(|(name, values)| Array { name, values: Values::Float64(values) });
-        let pairs =
-            self.pairs.iter().map(|(name, pairs)| Array { name, values: Values::Float64Pairs(pairs) });
-        single.chain(pairs)
-    }
-}
+/// The curvatures of points in space; in the plane there is only the first.
+pub(crate) const CURVATURES: [&str; 2] = ["MeanCurvature", "GaussianCurvature"];
 
 impl<'a> MeasuredArrays<'a> {
     /// Measures a network whose cells are wound as the file wants them.
@@ -66,92 +53,73 @@ impl<'a> MeasuredArrays<'a> {
     }
 
     /// Arrays over the points of the network.
-    pub(crate) fn of_points(&self) -> NumberArrays {
-        let curvature = |value: fn(&PointCurvature) -> f64| self.curvatures.iter().map(value).collect();
-        let mut single = vec![("MeanCurvature", curvature(|at| at.mean))];
-        if let Measures::Space(_) = self.measures {
-            single.push(("GaussianCurvature", curvature(|at| at.gaussian)));
+    pub(crate) fn of_points(&self) -> Vec<DataArray> {
+        let all: Vec<u32> = (0u32..).take(self.curvatures.len()).collect();
+        let mut arrays = self.curvatures_at(&all);
+        if let Measures::Plane(_) = self.measures {
+            arrays.truncate(1);
         }
-        single.push(("SmallestDihedralAngle", self.angles.iter().map(|range| range[0]).collect()));
-        single.push(("LargestDihedralAngle", self.angles.iter().map(|range| range[1]).collect()));
-        NumberArrays { single, pairs: Vec::new() }
+        for (place, name) in ["SmallestDihedralAngle", "LargestDihedralAngle"].into_iter().enumerate() {
+            arrays.push(single(name, self.angles.iter().map(|range| range[place])));
+        }
+        arrays
     }
 
     /// Arrays over cells that belong to these boundaries.
-    pub(crate) fn of_cells(&self, boundary_of_cell: &[BoundaryId]) -> NumberArrays {
+    pub(crate) fn of_cells(&self, boundary_of_cell: &[BoundaryId]) -> Vec<DataArray> {
         let all = self.polycrystal.network.boundaries();
-        let of_boundary = |value: &dyn Fn(&Boundary, usize) -> f64| {
-            let values: Vec<f64> =
-                all.iter().zip(&self.boundaries).map(|(boundary, place)| value(boundary, *place)).collect();
-            boundary_of_cell.iter().map(|boundary| values[boundary.index()]).collect()
+        let cells = || boundary_of_cell.iter().map(|boundary| boundary.index());
+        let of_boundary = |name, value: &dyn Fn(usize) -> f64| {
+            single(name, cells().map(|boundary| value(self.boundaries[boundary])))
         };
-        let of_sides = |value: &dyn Fn(usize) -> f64| {
-            let pair = |boundary: &Boundary| self.sides(boundary).map(|side| side.map_or(f64::NAN, value));
-            let pairs: Vec<[f64; 2]> = all.iter().map(pair).collect();
-            boundary_of_cell.iter().map(|boundary| pairs[boundary.index()]).collect()
+        let mean_curvature = |sides: &dyn Fn(usize) -> [Side; 2], value: &dyn Fn(usize) -> f64| {
+            let signed = |boundary: usize| {
+                let at = self.boundaries[boundary];
+                self.sign(&all[boundary], sides(at)) * value(at)
+            };
+            single("BoundaryMeanCurvature", cells().map(signed))
+        };
+        let sides: Vec<[Option<usize>; 2]> = all.iter().map(|boundary| self.sides(boundary)).collect();
+        let of_sides = |name, value: &dyn Fn(usize) -> f64| {
+            let pair = |boundary: usize| sides[boundary].map(|side| side.map_or(f64::NAN, value));
+            DataArray::float64(name, 2, cells().flat_map(pair).collect())
         };
         match &self.measures {
-            Measures::Space(measures) => {
-                let (boundaries, grains) = (&measures.boundaries, &measures.grains);
-                let curvature = |boundary: &Boundary, at: usize| {
-                    self.sign(boundary, boundaries[at].sides) * boundaries[at].mean_curvature
-                };
-                NumberArrays {
-                    single: vec![
-                        ("BoundaryArea", of_boundary(&|_, at| boundaries[at].area)),
-                        ("BoundaryMeanCurvature", of_boundary(&curvature)),
-                    ],
-                    pairs: vec![
-                        ("GrainVolumes", of_sides(&|grain| grains[grain].volume)),
-                        (
-                            "GrainGrowthRates",
-                            of_sides(&|grain| grains[grain].growth_rate.unwrap_or(f64::NAN)),
-                        ),
-                    ],
-                }
-            }
-            Measures::Plane(measures) => {
-                let (boundaries, grains) = (&measures.boundaries, &measures.grains);
-                let curvature = |boundary: &Boundary, at: usize| {
-                    self.sign(boundary, boundaries[at].sides) * boundaries[at].mean_curvature
-                };
-                NumberArrays {
-                    single: vec![
-                        ("BoundaryLength", of_boundary(&|_, at| boundaries[at].length)),
-                        ("BoundaryMeanCurvature", of_boundary(&curvature)),
-                    ],
-                    pairs: vec![
-                        ("GrainAreas", of_sides(&|grain| grains[grain].area)),
-                        (
-                            "GrainGrowthRates",
-                            of_sides(&|grain| grains[grain].growth_rate.unwrap_or(f64::NAN)),
-                        ),
-                    ],
-                }
-            }
+            Measures::Space(SpaceMeasures { boundaries, grains, .. }) => vec![
+                of_boundary("BoundaryArea", &|at| boundaries[at].area),
+                mean_curvature(&|at| boundaries[at].sides, &|at| boundaries[at].mean_curvature),
+                of_sides("GrainVolumes", &|grain| grains[grain].volume),
+                of_sides("GrainGrowthRates", &|grain| grains[grain].growth_rate.unwrap_or(f64::NAN)),
+            ],
+            Measures::Plane(PlaneMeasures { boundaries, grains, .. }) => vec![
+                of_boundary("BoundaryLength", &|at| boundaries[at].length),
+                mean_curvature(&|at| boundaries[at].sides, &|at| boundaries[at].mean_curvature),
+                of_sides("GrainAreas", &|grain| grains[grain].area),
+                of_sides("GrainGrowthRates", &|grain| grains[grain].growth_rate.unwrap_or(f64::NAN)),
+            ],
         }
     }
 
     /// What is known of each grain's surface beside its volume and area; nothing in the plane.
-    pub(crate) fn of_grains(&self, grain_of_cell: &[usize]) -> NumberArrays {
-        let Measures::Space(measures) = &self.measures else { return NumberArrays::default() };
-        let grains = &measures.grains;
-        let of = |value: &dyn Fn(usize) -> f64| grain_of_cell.iter().map(|grain| value(*grain)).collect();
-        let single = vec![
-            ("EquivalentDiameter", of(&|grain| grains[grain].equivalent_diameter)),
-            ("MeanWidth", of(&|grain| grains[grain].mean_width)),
-            ("TripleLineLength", of(&|grain| grains[grain].triple_line_length)),
-            ("GrowthRate", of(&|grain| grains[grain].growth_rate.unwrap_or(f64::NAN))),
-            ("CurvatureRate", of(&|grain| grains[grain].curvature_rate)),
-            ("Faces", of(&|grain| grains[grain].face_count as f64)),
-            ("EdgesPerFace", of(&|grain| grains[grain].edges_per_face)),
-        ];
-        NumberArrays { single, pairs: Vec::new() }
+    pub(crate) fn of_grains(&self, grain_of_cell: &[usize]) -> Vec<DataArray> {
+        let Measures::Space(SpaceMeasures { grains, .. }) = &self.measures else { return Vec::new() };
+        let of = |name, value: fn(&GrainMeasures) -> f64| {
+            single(name, grain_of_cell.iter().map(|grain| value(&grains[*grain])))
+        };
+        vec![
+            of("EquivalentDiameter", |grain| grain.equivalent_diameter),
+            of("MeanWidth", |grain| grain.mean_width),
+            of("TripleLineLength", |grain| grain.triple_line_length),
+            of("GrowthRate", |grain| grain.growth_rate.unwrap_or(f64::NAN)),
+            of("CurvatureRate", |grain| grain.curvature_rate),
+            of("Faces", |grain| grain.face_count as f64),
+            of("EdgesPerFace", |grain| grain.edges_per_face),
+        ]
     }
 
     /// Arrays over triple lines, each given by its points.
-    pub(crate) fn of_lines<'b>(&self, lines: impl Iterator<Item = &'b [u32]>) -> NumberArrays {
-        let Measures::Space(measures) = &self.measures else { return NumberArrays::default() };
+    pub(crate) fn of_lines<'b>(&self, lines: impl Iterator<Item = &'b [u32]>) -> Vec<DataArray> {
+        let Measures::Space(measures) = &self.measures else { return Vec::new() };
         let originals = self.polycrystal.originals();
         // The first edge tells a line from all others.
         let key = |a: u32, b: u32| {
@@ -169,21 +137,20 @@ impl<'a> MeasuredArrays<'a> {
             known.get(place).filter(|(ends, _)| *ends == wanted).map(|(_, line)| *line)
         };
         let found: Vec<Option<&TripleLineMeasures>> = lines.map(find).collect();
-        let of = |value: fn(&TripleLineMeasures) -> f64| {
-            found.iter().map(|line| line.map_or(f64::NAN, value)).collect()
+        let of = |name, value: fn(&TripleLineMeasures) -> f64| {
+            single(name, found.iter().map(|line| line.map_or(f64::NAN, value)))
         };
-        let single = vec![
-            ("Length", of(|line| line.length)),
-            ("SmallestAngle", of(|line| line.smallest_angle)),
-            ("LargestAngle", of(|line| line.largest_angle)),
-            ("Residual", of(|line| line.residual.unwrap_or(f64::NAN))),
-        ];
-        NumberArrays { single, pairs: Vec::new() }
+        vec![
+            of("Length", |line| line.length),
+            of("SmallestAngle", |line| line.smallest_angle),
+            of("LargestAngle", |line| line.largest_angle),
+            of("Residual", |line| line.residual.unwrap_or(f64::NAN)),
+        ]
     }
 
     /// Arrays over quadruple points, each given by its number in the network.
-    pub(crate) fn of_quadruple_points(&self, points: &[u32]) -> NumberArrays {
-        let Measures::Space(measures) = &self.measures else { return NumberArrays::default() };
+    pub(crate) fn of_quadruple_points(&self, points: &[u32]) -> Vec<DataArray> {
+        let Measures::Space(measures) = &self.measures else { return Vec::new() };
         let originals = self.polycrystal.originals();
         let known = &measures.quadruple_points;
         let find = |point: &u32| {
@@ -191,24 +158,29 @@ impl<'a> MeasuredArrays<'a> {
             known.binary_search_by_key(&original, |at| at.point).ok().map(|place| &known[place])
         };
         let found: Vec<Option<&QuadruplePointMeasures>> = points.iter().map(find).collect();
-        let of = |value: fn(&QuadruplePointMeasures) -> f64| {
-            found.iter().map(|point| point.map_or(f64::NAN, value)).collect()
+        let of = |name, value: fn(&QuadruplePointMeasures) -> f64| {
+            single(name, found.iter().map(|point| point.map_or(f64::NAN, value)))
         };
-        let single = vec![
-            ("MeanAngle", of(|point| point.mean_angle)),
-            ("SmallestAngle", of(|point| point.smallest_angle)),
-            ("LargestAngle", of(|point| point.largest_angle)),
-        ];
-        NumberArrays { single, pairs: Vec::new() }
+        vec![
+            of("MeanAngle", |point| point.mean_angle),
+            of("SmallestAngle", |point| point.smallest_angle),
+            of("LargestAngle", |point| point.largest_angle),
+        ]
     }
 
     /// The curvatures of some of the points.
-    pub(crate) fn curvatures_at(&self, points: &[u32]) -> NumberArrays {
-        let of = |value: fn(&PointCurvature) -> f64| {
-            points.iter().map(|point| value(&self.curvatures[*point as usize])).collect()
+    pub(crate) fn curvatures_at(&self, points: &[u32]) -> Vec<DataArray> {
+        let array = |(place, name)| single(name, self.curvature_at(place, points).into_iter());
+        CURVATURES.into_iter().enumerate().map(array).collect()
+    }
+
+    /// One of the [`CURVATURES`] at some of the points.
+    pub(crate) fn curvature_at(&self, place: usize, points: &[u32]) -> Vec<f64> {
+        let of = |point: &u32| {
+            let PointCurvature { mean, gaussian } = self.curvatures[*point as usize];
+            [mean, gaussian][place]
         };
-        let single = vec![("MeanCurvature", of(|at| at.mean)), ("GaussianCurvature", of(|at| at.gaussian))];
-        NumberArrays { single, pairs: Vec::new() }
+        points.iter().map(of).collect()
     }
 
     /// The places of the grains on both sides of a boundary, in the order of the file's labels.
@@ -237,4 +209,8 @@ impl<'a> MeasuredArrays<'a> {
         let is_reversed = self.polycrystal.file().names.reverses(boundary);
         if is_copy == is_reversed { 1.0 } else { -1.0 }
     }
+}
+
+fn single(name: &str, numbers: impl Iterator<Item = f64>) -> DataArray {
+    DataArray::float64(name, 1, numbers.collect())
 }

@@ -15,9 +15,7 @@ use crate::mesh::normal::unit_normal;
 use crate::names::{CRYSTAL_SYMMETRIES, MOBILITY, NUMBER_OF_GRAINS, PERIODS, PHASE_NAMES, SEED_ID, TENSION};
 use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;
-use crate::vtk::{
-    Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
-};
+use crate::vtk::{Array, Cells, DataArray, FieldEntry, FieldValue, ItemTuples, PolyData, Values, VtkFormat};
 use crate::{
     GrainAttributes, GrainPhases, GrainTexture, LabelGrid, MeasuredAttributes, Names, Parents, Polycrystal,
     Provenance, VolumeMesh,
@@ -105,58 +103,48 @@ impl Polycrystal {
             Elements::Segments(_) => Cells::Polylines(&polylines),
             _ if self.file().arrays => Cells::Triangles(&of_arrays),
             Elements::Triangles(triangles) if !is_reversed.contains(&true) => Cells::Triangles(triangles),
-            _ => Cells::TrianglesOf(Each { count: elements.len(), value: &triangle }),
+            _ => Cells::TrianglesOf { count: elements.len(), triangle: &triangle },
         };
         let count = cells.len();
         let labels: Vec<[i32; 2]> = boundaries.iter().map(|boundary| names.labels(boundary)).collect();
-        let labels = |cell: usize| labels[boundary_of(cell)];
-        // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
-        let boundary_id = |cell: usize| id(boundary_of(cell)).cast_signed();
-        let node_type = |point: usize| level.node_type(point).code();
-        // There are fewer than 128 levels.
-        let generation = |point: usize| level.generation(point).cast_signed();
-        let grain_count = |point: usize| level.grain_count(point);
-        let of_points = |value| Values::Int8Of(Each { count: self.points.len(), value });
-        let of_cells = |value| Values::Int32Of(Each { count, value });
-        let mut point_arrays = vec![
-            Array { name: "NodeTypes", values: of_points(&node_type) },
-            Array { name: "Generation", values: of_points(&generation) },
-            Array {
-                name: NUMBER_OF_GRAINS,
-                values: Values::UInt8Of(Each { count: self.points.len(), value: &grain_count }),
-            },
-        ];
-        let mut cell_arrays = vec![
-            Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
-            Array { name: "BoundaryId", values: of_cells(&boundary_id) },
-        ];
-        let neighbor = |cell: usize| self.periodic_neighbor(&boundaries[boundary_of(cell)]);
-        let originals;
-        if self.network.domain().is_periodic() {
-            originals = self.originals();
-            cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
-            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
-        }
+        let repeats = self.network.domain().is_periodic();
+        let originals = if repeats { self.originals() } else { Vec::new() };
         let boundary_tuples = self.boundary_tuples();
-        let item = |cell: usize| Some(boundary_of(cell));
-        cell_arrays.extend(boundary_tuples.iter().map(|tuples| Array {
-            name: tuples.name,
-            values: Values::Items(Items { tuples, count, item: &item }),
-        }));
-        let measured = self.file().arrays.then(|| MeasuredArrays::new(self, cells));
-        let (of_cells, of_points, normals);
-        if let Some(measured) = &measured {
-            normals = unit_normals(&self.points, &of_arrays);
-            if !normals.is_empty() {
-                cell_arrays.push(Array { name: "Normals", values: Values::Vectors(&normals) });
-            }
+        let normals = unit_normals(&self.points, &of_arrays);
+        let measured = self.file().arrays.then(|| {
             let boundary_of_cell: Vec<BoundaryId> =
                 (0..count).map(|cell| BoundaryId(id(boundary_of(cell)))).collect();
-            of_cells = measured.of_cells(&boundary_of_cell);
-            of_points = measured.of_points();
-            cell_arrays.extend(of_cells.arrays());
-            point_arrays.extend(of_points.arrays());
+            let measured = MeasuredArrays::new(self, cells);
+            (measured.of_cells(&boundary_of_cell), measured.of_points())
+        });
+        let (of_cells, of_points) = measured.unwrap_or_default();
+        let points = self.points.len();
+        // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids. There are fewer than 128 levels.
+        let mut point_arrays = vec![
+            Array { name: "NodeTypes", values: Values::each(points, |point| level.node_type(point).code()) },
+            Array {
+                name: "Generation",
+                values: Values::each(points, |point| level.generation(point).cast_signed()),
+            },
+            Array { name: NUMBER_OF_GRAINS, values: Values::each(points, |point| level.grain_count(point)) },
+        ];
+        let boundary_id = |cell: usize| id(boundary_of(cell)).cast_signed();
+        let mut cell_arrays = vec![
+            Array { name: names.sides(), values: Values::each(count, |cell| labels[boundary_of(cell)]) },
+            Array { name: "BoundaryId", values: Values::each(count, boundary_id) },
+        ];
+        if repeats {
+            let neighbor = |cell: usize| self.periodic_neighbor(&boundaries[boundary_of(cell)]);
+            cell_arrays.push(Array { name: "PeriodicNeighbor", values: Values::each(count, neighbor) });
+            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::slice(&originals) });
         }
+        let boundary = |cell: usize| Some(boundary_of(cell));
+        cell_arrays.extend(boundary_tuples.iter().map(|tuples| tuples.of_cells(count, boundary)));
+        if !normals.is_empty() {
+            cell_arrays.push(Array { name: "Normals", values: Values::slice(&normals) });
+        }
+        cell_arrays.extend(of_cells.iter().map(DataArray::array));
+        point_arrays.extend(of_points.iter().map(DataArray::array));
         // Small changes of the points are seen in these only, which validation has found the grains to have.
         let volumes = FieldValue::Numbers(self.network.cell_volumes().to_vec());
         let mut field = self.field();
@@ -187,12 +175,11 @@ impl Polycrystal {
         let texture = self.grains().texture.as_ref();
         let mut tuples = texture.map_or_else(Vec::new, |texture| texture.boundary_arrays(sides()));
         if self.tensions.is_some() {
-            tuples
-                .push(ItemTuples::numbers(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
+            tuples.push(ItemTuples::new(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
         }
         if self.mobilities.is_some() {
             let mobilities = self.network.mobilities().iter();
-            tuples.push(ItemTuples::numbers(MOBILITY, mobilities.map(|mobility| [*mobility])));
+            tuples.push(ItemTuples::new(MOBILITY, mobilities.map(|mobility| [*mobility])));
         }
         tuples
     }

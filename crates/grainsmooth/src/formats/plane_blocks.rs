@@ -9,10 +9,10 @@ use polycrystal::{GrainId, Side};
 
 use super::blocks::point_id;
 use crate::Polycrystal;
-use crate::formats::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::formats::measured_arrays::MeasuredArrays;
 use crate::formats::network::boundary_polylines;
 use crate::names::{NUMBER_OF_GRAINS, SEED_ID};
-use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, DataArray, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
 struct PlaneMeasure {
@@ -49,31 +49,28 @@ impl Polycrystal {
         let labels = |line: usize| names.labels(&boundaries[boundary_of[line].index()]);
         let boundary_id = |line: usize| boundary_of[line].0.cast_signed();
         let id = |point: usize| ids[point].cast_signed();
-        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
-        let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let of_lines = measured.map_or_else(Vec::new, |all| all.of_cells(&boundary_of));
+        let of_points = measured.map_or_else(Vec::new, |all| all.curvatures_at(&ids));
         let grain_counts = self.grain_counts(&ids);
+        let boundary_tuples = self.boundary_tuples();
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: vec![
-                Array { name: "Normals", values: Values::Vectors(&normals) },
-                Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
-                Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) },
+                Array { name: "Normals", values: Values::slice(&normals) },
+                Array { name: "PointId", values: Values::each(points.len(), id) },
+                Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) },
             ],
             cell_arrays: vec![
-                Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
-                Array { name: "BoundaryId", values: Values::Int32Of(Each { count, value: &boundary_id }) },
+                Array { name: names.sides(), values: Values::each(count, labels) },
+                Array { name: "BoundaryId", values: Values::each(count, boundary_id) },
             ],
             field: self.field(),
         };
-        let boundary_tuples = self.boundary_tuples();
         let boundary = |line: usize| Some(boundary_of[line].index());
-        data.cell_arrays.extend(boundary_tuples.iter().map(|tuples| {
-            let items = Items { tuples, count, item: &boundary };
-            Array { name: tuples.name, values: Values::Items(items) }
-        }));
-        data.cell_arrays.extend(of_lines.arrays());
-        data.point_arrays.extend(of_points.arrays());
+        data.cell_arrays.extend(boundary_tuples.iter().map(|tuples| tuples.of_cells(count, boundary)));
+        data.cell_arrays.extend(of_lines.iter().map(DataArray::array));
+        data.point_arrays.extend(of_points.iter().map(DataArray::array));
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
@@ -93,36 +90,31 @@ impl Polycrystal {
             points.extend(corners);
         }
         let count = triangles.len();
-        let integers = |value| Values::Int32Of(Each { count, value });
-        let doubles = |value| Values::Float64Of(Each { count, value });
         let measure = |triangle: usize| -> &PlaneMeasure { &measures[place_of[triangle]].1 };
         let grain_of = |triangle: usize| -> usize { measures[place_of[triangle]].0 };
         let number = |triangle: usize| names.number(GrainId(point_id(grain_of(triangle))));
         let seed = |triangle: usize| self.grains().ids[grain_of(triangle)].cast_signed();
-        let area = |triangle: usize| measure(triangle).area;
-        let perimeter = |triangle: usize| measure(triangle).perimeter;
-        let neighbors = |triangle: usize| measure(triangle).neighbors;
-        let circularity = |triangle: usize| measure(triangle).circularity();
-        let mut data = PolyData {
+        let tuples = self.grain_tuples();
+        let mut cell_arrays = vec![
+            Array { name: names.grain(), values: Values::each(count, number) },
+            Array { name: SEED_ID, values: Values::each(count, seed) },
+            Array { name: "Volume", values: Values::each(count, |triangle| measure(triangle).area) },
+            Array { name: "Area", values: Values::each(count, |triangle| measure(triangle).perimeter) },
+            Array { name: "Neighbors", values: Values::each(count, |triangle| measure(triangle).neighbors) },
+            Array {
+                name: "Sphericity",
+                values: Values::each(count, |triangle| measure(triangle).circularity()),
+            },
+        ];
+        let grain = |triangle: usize| Some(grain_of(triangle));
+        cell_arrays.extend(tuples.iter().map(|tuples| tuples.of_cells(count, grain)));
+        let data = PolyData {
             points: &points,
             cells: Cells::Triangles(&triangles),
             point_arrays: Vec::new(),
-            cell_arrays: vec![
-                Array { name: names.grain(), values: integers(&number) },
-                Array { name: SEED_ID, values: integers(&seed) },
-                Array { name: "Volume", values: doubles(&area) },
-                Array { name: "Area", values: doubles(&perimeter) },
-                Array { name: "Neighbors", values: integers(&neighbors) },
-                Array { name: "Sphericity", values: doubles(&circularity) },
-            ],
+            cell_arrays,
             field: self.field(),
         };
-        let tuples = self.grain_tuples();
-        let grain = |triangle: usize| Some(grain_of(triangle));
-        data.cell_arrays.extend(tuples.iter().map(|tuples| {
-            let items = Items { tuples, count, item: &grain };
-            Array { name: tuples.name, values: Values::Items(items) }
-        }));
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
@@ -153,8 +145,8 @@ impl Polycrystal {
         let data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
+            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
             field: self.field(),
         };
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)

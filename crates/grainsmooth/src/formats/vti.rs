@@ -6,7 +6,7 @@ use polycrystal::Side;
 use rayon::prelude::*;
 
 use super::format::{Content, Format, HEAD, Writer};
-use crate::vtk::{Array, Blocks, ImageData, ItemBlocks, ItemTuples, Values, VtkEncoding, write_vti};
+use crate::vtk::{Array, ImageData, ItemTuples, Values, VtkEncoding, write_vti};
 use crate::{FileOptions, GrainAttributes, GrainPhases, LabelGrid, Polycrystal};
 
 pub(super) const FORMAT: Format = Format {
@@ -34,18 +34,14 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
         grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label)).collect::<Vec<i32>>()
     };
     let count = usize::try_from(grid.voxel_count()).map_err(io::Error::other)?;
-    let blocks = Blocks { count, blocks: grid.slab_count(), make: &make };
-    let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
-    let grain = |label: Side| label.grain().map(|grain| grain.index());
-    let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
+    let slabs = grid.slab_count();
     let GrainAttributes { phases, texture, .. } = polycrystal.grains();
     let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
     tuples.extend(texture.iter().flat_map(|texture| texture.color_arrays(names)));
-    let count = blocks.count;
-    cell_arrays.extend(tuples.iter().map(|tuples| {
-        let blocks = ItemBlocks { tuples, count, blocks: grid.slab_count(), make: &items };
-        Array { name: tuples.name, values: Values::ItemBlocks(blocks) }
-    }));
+    let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::blocks(count, slabs, make) }];
+    let grain = |label: Side| label.grain().map(|grain| grain.index());
+    let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
+    cell_arrays.extend(tuples.iter().map(|tuples| tuples.of_blocks(count, slabs, items)));
     let LabelGrid { size, origin, spacing, .. } = grid;
     let mut field = polycrystal.field();
     field.push(polycrystal.seed_ids());

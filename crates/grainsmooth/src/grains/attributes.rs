@@ -42,8 +42,8 @@ impl MeasuredAttributes {
     pub(crate) fn arrays(&self) -> impl Iterator<Item = ItemTuples> {
         let counts = self.voxel_counts.iter().map(|count| [i32::try_from(*count).unwrap_or(i32::MAX)]);
         let spreads = self.spreads.iter();
-        let spreads = spreads.map(|all| ItemTuples::numbers(SPREAD, all.iter().map(|spread| [*spread])));
-        std::iter::once(ItemTuples::integers(VOXEL_COUNT, counts)).chain(spreads)
+        let spreads = spreads.map(|all| ItemTuples::new(SPREAD, all.iter().map(|spread| [*spread])));
+        std::iter::once(ItemTuples::new(VOXEL_COUNT, counts)).chain(spreads)
     }
 }
 

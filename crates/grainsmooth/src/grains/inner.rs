@@ -288,7 +288,7 @@ impl Parents {
     /// What files hold of each grain's parent.
     pub(crate) fn array(&self) -> ItemTuples {
         let number = |grain: usize| [self.number(grain).cast_signed()];
-        ItemTuples::integers(PARENT, (0..self.parent_of.len()).map(number))
+        ItemTuples::new(PARENT, (0..self.parent_of.len()).map(number))
     }
 
     /// What grains have, added up by their parents.

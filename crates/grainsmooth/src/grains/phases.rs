@@ -146,7 +146,7 @@ impl GrainPhases {
 
     /// What files hold of each grain's phase.
     pub(crate) fn array(&self) -> ItemTuples {
-        ItemTuples::integers(PHASE, (0..self.phase_of.len()).map(|grain| [self.number(grain)]))
+        ItemTuples::new(PHASE, (0..self.phase_of.len()).map(|grain| [self.number(grain)]))
     }
 
     /// What of the volume each phase has, in the cells and in the finished grains.

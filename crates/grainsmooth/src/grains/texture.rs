@@ -225,8 +225,8 @@ impl GrainTexture {
     pub(crate) fn orientation_arrays(&self) -> [ItemTuples; 2] {
         let orientations = || self.orientations.iter();
         [
-            ItemTuples::numbers("EulerAngles", orientations().map(|one| one.euler_degrees())),
-            ItemTuples::numbers("Quaternion", orientations().map(|one| one.quaternion())),
+            ItemTuples::new("EulerAngles", orientations().map(|one| one.euler_degrees())),
+            ItemTuples::new("Quaternion", orientations().map(|one| one.quaternion())),
         ]
     }
 
@@ -234,7 +234,7 @@ impl GrainTexture {
     pub(crate) fn color_arrays(&self, names: Names) -> [ItemTuples; 3] {
         let [x, y, z] = names.inverse_pole_figures();
         [(x, DVec3::X), (y, DVec3::Y), (z, DVec3::Z)]
-            .map(|(name, axis)| ItemTuples::bytes(name, self.colors(axis)))
+            .map(|(name, axis)| ItemTuples::new(name, self.colors(axis)))
     }
 
     /// The inverse pole figure colour of each grain for an axis of the sample.
@@ -250,8 +250,8 @@ impl GrainTexture {
         let angle = |found: &Option<Disorientation>| [found.map_or(f64::NAN, |found| found.angle)];
         let axis = |found: &Option<Disorientation>| found.map_or(DVec3::NAN, |found| found.axis).to_array();
         vec![
-            ItemTuples::numbers("Disorientation", found.iter().map(angle)),
-            ItemTuples::numbers("DisorientationAxis", found.iter().map(axis)),
+            ItemTuples::new("Disorientation", found.iter().map(angle)),
+            ItemTuples::new("DisorientationAxis", found.iter().map(axis)),
         ]
     }
 }

@@ -177,7 +177,7 @@ impl Loaded {
             (0..array.components).map(move |part| (array, is_of_points, part))
         });
         let (array, is_of_points, part) = parts.nth(number)?;
-        let numbers = columns::numbers(array);
+        let numbers = array.to_f64();
         Some(match (is_of_points, &self.lines) {
             (true, _) => self.network.of_points(&numbers, array.components, part),
             (false, None) => self.network.of_triangles(&numbers, array.components, part),

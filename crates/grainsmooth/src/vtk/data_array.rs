@@ -4,6 +4,7 @@ use vtkio::IOBuffer;
 use vtkio::xml::ScalarType;
 
 use super::raw::Numbers;
+use super::{Array, Values};
 
 /// An array of tuples under its name.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +36,11 @@ impl DataArray {
         Self { name: name.to_owned(), components: 1, numbers: DataNumbers::Int32(numbers) }
     }
 
+    /// Floating point numbers, so many a tuple.
+    pub fn float64(name: &str, components: usize, numbers: Vec<f64>) -> Self {
+        Self { name: name.to_owned(), components, numbers: DataNumbers::Float64(numbers) }
+    }
+
     /// What `vtkio` has read; integers that 32 bits do not hold become floating point numbers. Nothing for bits, and where tuples
     /// are not whole.
     pub(crate) fn of_buffer(name: &str, components: usize, buffer: &IOBuffer) -> Option<Self> {
@@ -51,26 +57,30 @@ impl DataArray {
                 }
             }
         };
-        let is_whole = components > 0 && numbers.len().is_multiple_of(components);
         // The legacy format puts blanks between a name and what follows.
-        is_whole.then(|| Self { name: name.replace(char::is_whitespace, "_"), components, numbers })
+        let array = Self { name: name.replace(char::is_whitespace, "_"), components, numbers };
+        let is_whole = components > 0 && buffer.len().is_multiple_of(components);
+        is_whole.then_some(array)
     }
 
-    /// The numbers, where a tuple is a single one.
-    pub fn scalars(&self) -> Option<Vec<f64>> {
-        let numbers = match &self.numbers {
-            _ if self.components != 1 => return None,
+    /// All numbers, whatever their kind.
+    pub fn to_f64(&self) -> Vec<f64> {
+        match &self.numbers {
             DataNumbers::Int8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
             DataNumbers::UInt8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
             DataNumbers::Int32(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
             DataNumbers::Float64(numbers) => numbers.clone(),
-        };
-        Some(numbers)
+        }
+    }
+
+    /// The same, where a tuple is a single number.
+    pub fn scalars(&self) -> Option<Vec<f64>> {
+        (self.components == 1).then(|| self.to_f64())
     }
 
     /// Number of tuples.
     pub fn len(&self) -> usize {
-        self.numbers.len() / self.components
+        self.bytes().len() / (self.kind().size() * self.components)
     }
 
     /// Whether there is no tuple.
@@ -101,14 +111,13 @@ impl DataArray {
     /// # Panics
     /// If there is no such tuple.
     pub fn are_equal(&self, first: usize, second: usize) -> bool {
-        let tuple = |place: usize| place * self.components..(place + 1) * self.components;
-        let (first, second) = (tuple(first), tuple(second));
-        match &self.numbers {
-            DataNumbers::Int8(numbers) => numbers[first] == numbers[second],
-            DataNumbers::UInt8(numbers) => numbers[first] == numbers[second],
-            DataNumbers::Int32(numbers) => numbers[first] == numbers[second],
-            DataNumbers::Float64(numbers) => numbers[first] == numbers[second],
-        }
+        self.tuple(first) == self.tuple(second)
+    }
+
+    /// The bytes of a tuple.
+    pub(super) fn tuple(&self, place: usize) -> &[u8] {
+        let width = self.kind().size() * self.components;
+        &self.bytes()[place * width..(place + 1) * width]
     }
 
     /// Exchanges the two components of a tuple.
@@ -135,43 +144,19 @@ impl DataArray {
         }
     }
 
-    /// The kind of the numbers as XML files name it.
-    pub(super) fn kind_name(&self) -> &'static str {
-        match self.numbers {
-            DataNumbers::Int8(_) => "Int8",
-            DataNumbers::UInt8(_) => "UInt8",
-            DataNumbers::Int32(_) => "Int32",
-            DataNumbers::Float64(_) => "Float64",
-        }
-    }
-
     /// The bytes of all numbers.
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    pub(super) fn bytes(&self) -> &[u8] {
         match &self.numbers {
-            DataNumbers::Int8(numbers) => bytemuck::cast_slice(numbers).to_vec(),
-            DataNumbers::UInt8(numbers) => numbers.clone(),
-            DataNumbers::Int32(numbers) => bytemuck::cast_slice(numbers).to_vec(),
-            DataNumbers::Float64(numbers) => bytemuck::cast_slice(numbers).to_vec(),
+            DataNumbers::Int8(numbers) => bytemuck::cast_slice(numbers),
+            DataNumbers::UInt8(numbers) => numbers,
+            DataNumbers::Int32(numbers) => bytemuck::cast_slice(numbers),
+            DataNumbers::Float64(numbers) => bytemuck::cast_slice(numbers),
         }
     }
 
-    pub(super) fn written(&self) -> Numbers<'_> {
-        match &self.numbers {
-            DataNumbers::Int8(numbers) => Numbers::slice(numbers),
-            DataNumbers::UInt8(numbers) => Numbers::slice(numbers),
-            DataNumbers::Int32(numbers) => Numbers::slice(numbers),
-            DataNumbers::Float64(numbers) => Numbers::slice(numbers),
-        }
-    }
-}
-
-impl DataNumbers {
-    fn len(&self) -> usize {
-        match self {
-            Self::Int8(numbers) => numbers.len(),
-            Self::UInt8(numbers) => numbers.len(),
-            Self::Int32(numbers) => numbers.len(),
-            Self::Float64(numbers) => numbers.len(),
-        }
+    /// The array for a file.
+    pub(crate) fn array(&self) -> Array<'_> {
+        let numbers = Numbers::slice(self.bytes());
+        Array { name: &self.name, values: Values::new(self.kind(), self.components, self.len(), numbers) }
     }
 }

@@ -33,6 +33,20 @@ pub enum FieldValue {
     Data(DataArray),
 }
 
+impl FieldValue {
+    /// The kind of the numbers, how many a tuple has, and their bytes; a text is its bytes.
+    pub(super) fn numbers(&self) -> (ScalarType, usize, &[u8]) {
+        match self {
+            Self::Text(text) => (ScalarType::UInt8, 1, text.as_bytes()),
+            Self::Integer(number) => (ScalarType::UInt64, 1, bytemuck::bytes_of(number)),
+            Self::Numbers(numbers) => (ScalarType::Float64, 1, bytemuck::cast_slice(numbers)),
+            Self::Ids(ids) => (ScalarType::Int32, 1, bytemuck::cast_slice(ids)),
+            Self::Items(tuples) => (tuples.kind, tuples.components, tuples.all()),
+            Self::Data(array) => (array.kind(), array.components, array.bytes()),
+        }
+    }
+}
+
 /// An entry of the field data of a .vtp, .vtu or .vti file, whatever it is. `is_text` tells a text in a .vtu file, where texts are bytes.
 pub(crate) fn field_entry(file: &XmlFile<'_>, name: &'static str, is_text: bool) -> Option<FieldEntry> {
     let array = file.field(name)?;

@@ -9,7 +9,7 @@ use super::raw::{Numbers, NumbersOfFile};
 use super::{Array, FieldEntry, FieldValue, VtkEncoding};
 
 /// A regular grid of cells.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct ImageData<'a> {
     /// Number of cells along each axis.
     pub size: [usize; 3],
@@ -35,38 +35,45 @@ pub fn write_vti(data: &ImageData<'_>, encoding: VtkEncoding, out: &mut dyn Writ
     let (origin, spacing) = (numbers(data.origin), numbers(data.spacing));
     let mut numbers_of_file = NumbersOfFile::new(encoding);
     let mut document = Vec::new();
-    let head = &mut document;
-    write_head("ImageData", &numbers_of_file, head)?;
+    writeln!(document, "{}", head("ImageData", &numbers_of_file))?;
     writeln!(
-        head,
+        document,
         "<ImageData WholeExtent=\"0 {nx} 0 {ny} 0 {nz}\" Origin=\"{origin}\" Spacing=\"{spacing}\" Direction=\"1 0 0 0 1 0 0 0 1\">"
     )?;
-    writeln!(head, "<FieldData>")?;
-    write_field(&data.field, &mut numbers_of_file, head)?;
-    writeln!(head, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
-    for Array { name, values } in &data.cell_arrays {
-        assert_eq!(values.len(), nx * ny * nz, "cell array {name}");
-        let (kind, components) = (values.scalar_type(), values.component_count());
-        let offset = numbers_of_file.append(Numbers::of(*values));
-        writeln!(
-            head,
-            "<DataArray type=\"{kind:?}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
-        )?;
+    writeln!(document, "<FieldData>")?;
+    write_field(&data.field, &mut numbers_of_file, &mut document)?;
+    writeln!(document, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
+    for array in &data.cell_arrays {
+        assert_eq!(array.values.len(), nx * ny * nz, "cell array {}", array.name);
+        write_array(array, &mut numbers_of_file, &mut document)?;
     }
-    writeln!(head, "</CellData>\n</Piece>\n</ImageData>")?;
+    writeln!(document, "</CellData>\n</Piece>\n</ImageData>")?;
     numbers_of_file.write_file(&document, out)
 }
 
-/// Begins a file.
-pub(super) fn write_head(kind: &str, numbers: &NumbersOfFile<'_>, out: &mut dyn Write) -> io::Result<()> {
+/// The first tag of a file. Its version is the one that VTK, ParaView, pyvista and meshio all read.
+pub(super) fn head(kind: &str, numbers: &NumbersOfFile<'_>) -> String {
     let byte_order = match ByteOrder::native() {
         ByteOrder::LittleEndian => "LittleEndian",
         ByteOrder::BigEndian => "BigEndian",
     };
     let compressor = numbers.compressor().map_or(String::new(), |name| format!(" compressor=\"{name}\""));
+    format!(
+        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\"{compressor}>"
+    )
+}
+
+/// Lists an array of points or cells.
+pub(super) fn write_array<'a>(
+    Array { name, values }: &Array<'a>,
+    numbers_of_file: &mut NumbersOfFile<'a>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let (kind, components) = (values.kind, values.components);
+    let offset = numbers_of_file.append(values.numbers.clone());
     writeln!(
         out,
-        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\"{compressor}>"
+        "<DataArray type=\"{kind:?}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
     )
 }
 
@@ -77,19 +84,10 @@ pub(super) fn write_field(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for FieldEntry { name, value } in field {
-        let (element, kind, components, count, bytes) = match value {
-            FieldValue::Text(text) => ("Array", "String", 1, 1, format!("{text}\0").into_bytes()),
-            FieldValue::Integer(number) => ("DataArray", "UInt64", 1, 1, number.to_ne_bytes().to_vec()),
-            FieldValue::Numbers(numbers) => {
-                ("DataArray", "Float64", 1, numbers.len(), bytemuck::cast_slice(numbers).to_vec())
-            }
-            FieldValue::Ids(ids) => ("DataArray", "Int32", 1, ids.len(), bytemuck::cast_slice(ids).to_vec()),
-            FieldValue::Items(tuples) => {
-                ("DataArray", tuples.kind_name(), tuples.components, tuples.len(), tuples.all().to_vec())
-            }
-            FieldValue::Data(array) => {
-                ("DataArray", array.kind_name(), array.components, array.len(), array.to_bytes())
-            }
+        let (kind, components, bytes) = value.numbers();
+        let (element, kind, count, bytes) = match value {
+            FieldValue::Text(_) => ("Array", "String".to_owned(), 1, [bytes, b"\0"].concat()),
+            _ => ("DataArray", format!("{kind:?}"), bytes.len() / (kind.size() * components), bytes.to_vec()),
         };
         let offset = numbers_of_file.append(Numbers::bytes(bytes));
         let components =

@@ -1,8 +1,11 @@
 //! Tuples of few items, such as grains, which many cells share.
 
+use std::sync::Arc;
+
 use vtkio::xml::ScalarType;
 
 use super::raw::Numbers;
+use super::{Array, Tuple, Values};
 
 /// A named tuple of numbers for each of some items. Cells that belong to none have NaN, or 0 where there is no such number.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,48 +21,23 @@ pub struct ItemTuples {
 }
 
 impl ItemTuples {
-    /// Tuples of 64-bit floating point numbers.
-    pub fn numbers<const N: usize>(name: &'static str, tuples: impl Iterator<Item = [f64; N]>) -> Self {
-        let none = bytemuck::cast_slice(&[f64::NAN; N]).to_vec();
-        let bytes = tuples.flat_map(|tuple| bytemuck::cast_slice::<f64, u8>(&tuple).to_vec()).collect();
-        Self { name, kind: ScalarType::Float64, components: N, bytes, none }
-    }
-
-    /// Tuples of 32-bit integers.
-    pub fn integers<const N: usize>(name: &'static str, tuples: impl Iterator<Item = [i32; N]>) -> Self {
-        let bytes = tuples.flat_map(|tuple| bytemuck::cast_slice::<i32, u8>(&tuple).to_vec()).collect();
-        Self { name, kind: ScalarType::Int32, components: N, bytes, none: vec![0; N * size_of::<i32>()] }
-    }
-
-    /// Tuples of unsigned 8-bit integers.
-    pub fn bytes<const N: usize>(name: &'static str, tuples: impl Iterator<Item = [u8; N]>) -> Self {
-        Self {
-            name,
-            kind: ScalarType::UInt8,
-            components: N,
-            bytes: tuples.flatten().collect(),
-            none: vec![0; N],
-        }
+    /// The tuples of all items.
+    pub fn new<T: Tuple, const N: usize>(name: &'static str, tuples: impl Iterator<Item = [T; N]>) -> Self
+    where
+        [T; N]: Tuple,
+    {
+        let none = match T::KIND {
+            ScalarType::Float64 => bytemuck::cast_slice(&[f64::NAN; N]).to_vec(),
+            _ => vec![0; size_of::<[T; N]>()],
+        };
+        let bytes = tuples.flat_map(|tuple| bytemuck::bytes_of(&tuple).to_vec()).collect();
+        Self { name, kind: T::KIND, components: N, bytes, none }
     }
 
     /// The bytes of an item's tuple.
     pub(crate) fn of(&self, item: Option<usize>) -> &[u8] {
         let width = self.none.len();
         item.map_or(&self.none, |item| &self.bytes[item * width..(item + 1) * width])
-    }
-
-    /// The kind of the numbers as XML files name it.
-    pub(super) fn kind_name(&self) -> &'static str {
-        match self.kind {
-            ScalarType::UInt8 => "UInt8",
-            ScalarType::Int32 => "Int32",
-            _ => "Float64",
-        }
-    }
-
-    /// Number of items.
-    pub(super) fn len(&self) -> usize {
-        self.bytes.len() / self.width()
     }
 
     /// The bytes of all items' tuples.
@@ -72,18 +50,33 @@ impl ItemTuples {
         self.none.len()
     }
 
-    /// The tuples of cells, each with its item.
-    pub(super) fn of_cells<'a>(
+    /// The array of so many cells, each with its item.
+    pub(crate) fn of_cells<'a>(
         &'a self,
         count: usize,
-        item: &'a (dyn Fn(usize) -> Option<usize> + Sync),
-    ) -> Numbers<'a> {
+        item: impl Fn(usize) -> Option<usize> + Send + Sync + 'a,
+    ) -> Array<'a> {
         let width = self.width();
         let fill = move |first: usize, bytes: &mut [u8]| {
             for (index, place) in bytes.chunks_exact_mut(width).enumerate() {
                 place.copy_from_slice(self.of(item(first + index)));
             }
         };
-        Numbers::Computed { count, width, fill: Box::new(fill) }
+        self.array(count, Numbers::Computed { count, width, fill: Arc::new(fill) })
+    }
+
+    /// The same, with the items of cells made block by block.
+    pub(crate) fn of_blocks<'a>(
+        &'a self,
+        count: usize,
+        blocks: usize,
+        items: impl Fn(usize) -> Vec<Option<usize>> + Send + Sync + 'a,
+    ) -> Array<'a> {
+        let make = move |block| items(block).into_iter().flat_map(|item| self.of(item)).copied().collect();
+        self.array(count, Numbers::blocks(count * self.width(), blocks, make))
+    }
+
+    fn array<'a>(&'a self, count: usize, numbers: Numbers<'a>) -> Array<'a> {
+        Array { name: self.name, values: Values::new(self.kind, self.components, count, numbers) }
     }
 }

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use vtkio::xml::ScalarType;
 
 use super::raw::Numbers;
-use super::{Array, Cells, Each, FieldEntry, FieldValue, PolyData, is_normals};
+use super::{Array, Cells, FieldEntry, FieldValue, PolyData, is_normals};
 
 /// The last version whose cells are 32-bit; every reader knows it.
 const VERSION: &str = "4.2";
@@ -30,9 +30,9 @@ pub(super) fn write(data: &PolyData<'_>, out: &mut dyn Write) -> io::Result<()> 
             };
             ("POLYGONS", Numbers::each(triangles.len(), cell))
         }
-        Cells::TrianglesOf(Each { count, value }) => {
+        Cells::TrianglesOf { count, triangle } => {
             let cell = move |index: usize| {
-                let [a, b, c] = value(index);
+                let [a, b, c] = triangle(index);
                 [3, a, b, c]
             };
             ("POLYGONS", Numbers::each(count, cell))
@@ -84,7 +84,7 @@ fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn
     let (normals, arrays): (Vec<&Array<'_>>, Vec<_>) = arrays.iter().partition(|array| is_normals(array));
     for Array { name, values } in normals {
         writeln!(out, "NORMALS {name} double")?;
-        Numbers::of(*values).write_big_endian(size_of::<f64>(), out)?;
+        values.numbers.write_big_endian(size_of::<f64>(), out)?;
         writeln!(out)?;
     }
     if arrays.is_empty() {
@@ -92,9 +92,9 @@ fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn
     }
     writeln!(out, "FIELD FieldData {}", arrays.len())?;
     for Array { name, values } in arrays {
-        let (kind, bytes) = kind_and_width(values.scalar_type());
-        writeln!(out, "{name} {} {count} {kind}", values.component_count())?;
-        Numbers::of(*values).write_big_endian(bytes, out)?;
+        let (kind, bytes) = kind_and_width(values.kind);
+        writeln!(out, "{name} {} {count} {kind}", values.components)?;
+        values.numbers.write_big_endian(bytes, out)?;
         writeln!(out)?;
     }
     writeln!(out)
@@ -106,6 +106,8 @@ fn kind_and_width(kind: ScalarType) -> (&'static str, usize) {
         ScalarType::Int8 => ("char", size_of::<i8>()),
         ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
         ScalarType::Float64 => ("double", size_of::<f64>()),
+        // The older name `unsigned_long` has four bytes on some systems.
+        ScalarType::UInt64 => ("vtktypeuint64", size_of::<u64>()),
         _ => ("int", size_of::<i32>()),
     }
 }
@@ -117,35 +119,19 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "FIELD FieldData {}", entries.len())?;
     for FieldEntry { name, value } in entries {
         match value {
-            FieldValue::Integer(number) => {
-                // The older name `unsigned_long` has four bytes on some systems.
-                writeln!(out, "{name} 1 1 vtktypeuint64")?;
-                out.write_all(&number.to_be_bytes())?;
-            }
-            FieldValue::Numbers(numbers) => {
-                writeln!(out, "{name} 1 {} double", numbers.len())?;
-                numbers.iter().try_for_each(|number| out.write_all(&number.to_be_bytes()))?;
-            }
-            FieldValue::Ids(ids) => {
-                writeln!(out, "{name} 1 {} int", ids.len())?;
-                ids.iter().try_for_each(|id| out.write_all(&id.to_be_bytes()))?;
-            }
-            FieldValue::Items(tuples) => {
-                let (kind, width) = kind_and_width(tuples.kind);
-                writeln!(out, "{name} {} {} {kind}", tuples.components, tuples.len())?;
-                Numbers::bytes(tuples.all().to_vec()).write_big_endian(width, out)?;
-            }
-            FieldValue::Data(array) => {
-                let (kind, width) = kind_and_width(array.kind());
-                writeln!(out, "{name} {} {} {kind}", array.components, array.len())?;
-                array.written().write_big_endian(width, out)?;
-            }
             FieldValue::Text(text) => {
                 writeln!(out, "{name} 1 1 string")?;
                 // The two highest bits say how long the length is: 01 for four bytes in all.
                 let length = checked_count(text.len())?.min(0x3fff_ffff);
                 out.write_all(&(length | 0x4000_0000).to_be_bytes())?;
                 out.write_all(text.as_bytes())?;
+            }
+            _ => {
+                let (kind, components, bytes) = value.numbers();
+                let (name_of_kind, width) = kind_and_width(kind);
+                let count = bytes.len() / (width * components);
+                writeln!(out, "{name} {components} {count} {name_of_kind}")?;
+                Numbers::slice(bytes).write_big_endian(width, out)?;
             }
         }
         writeln!(out)?;

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 use std::io::{self, Write};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Blocks, ItemBlocks, Items, Values, VtkEncoding};
+use super::VtkEncoding;
 
 mod encode;
 
@@ -16,12 +17,13 @@ const BLOCK_NUMBERS: usize = 1 << 17;
 const TASK_NUMBERS: usize = 1 << 13;
 
 /// Makes the bytes of a piece.
-type MakePiece<'a> = Box<dyn Fn(usize) -> Vec<u8> + Sync + 'a>;
+pub(super) type MakePiece<'a> = Arc<dyn Fn(usize) -> Vec<u8> + Send + Sync + 'a>;
 
 /// Fills in the bytes of values from a position on.
-type Fill<'a> = Box<dyn Fn(usize, &mut [u8]) + Sync + 'a>;
+type Fill<'a> = Arc<dyn Fn(usize, &mut [u8]) + Send + Sync + 'a>;
 
 /// The bytes of one array.
+#[derive(Clone)]
 pub(crate) enum Numbers<'a> {
     /// Bytes in memory.
     Bytes(Cow<'a, [u8]>),
@@ -59,50 +61,32 @@ impl<'a> Numbers<'a> {
     }
 
     /// Values that follow from their positions.
-    pub(crate) fn each<T: bytemuck::NoUninit>(count: usize, value: impl Fn(usize) -> T + Sync + 'a) -> Self {
+    pub(crate) fn each<T: bytemuck::NoUninit>(
+        count: usize,
+        value: impl Fn(usize) -> T + Send + Sync + 'a,
+    ) -> Self {
         let width = size_of::<T>();
         let fill = move |first: usize, bytes: &mut [u8]| {
             for (index, place) in bytes.chunks_exact_mut(width).enumerate() {
                 place.copy_from_slice(bytemuck::bytes_of(&value(first + index)));
             }
         };
-        Self::Computed { count, width, fill: Box::new(fill) }
+        Self::Computed { count, width, fill: Arc::new(fill) }
     }
 
-    /// The values of an array.
-    pub(crate) fn of(values: Values<'a>) -> Self {
-        match values {
-            Values::Int8(values) => Self::slice(values),
-            Values::UInt8(values) => Self::slice(values),
-            Values::Int32(values) => Self::slice(values),
-            Values::Int32Pairs(pairs) => Self::slice(pairs),
-            Values::Float64(values) => Self::slice(values),
-            Values::Float64Pairs(pairs) => Self::slice(pairs),
-            Values::Vectors(vectors) => Self::slice(vectors),
-            Values::Int8Of(each) => Self::each(each.count, each.value),
-            Values::UInt8Of(each) => Self::each(each.count, each.value),
-            Values::Int32Of(each) => Self::each(each.count, each.value),
-            Values::Int32PairsOf(each) => Self::each(each.count, each.value),
-            Values::Int32Tuples(tuples) => Self::slice(tuples.values),
-            // Blocks are large, and each is made in parallel.
-            Values::Int32Blocks(Blocks { count, blocks, make }) => Self::Pieces {
-                byte_count: (count * size_of::<i32>()) as u64,
-                count: blocks,
-                at_once: 1,
-                make: Box::new(|block| bytemuck::cast_slice(&make(block)).to_vec()),
-            },
-            Values::Float64Of(each) => Self::each(each.count, each.value),
-            Values::Data(array) => array.written(),
-            Values::Items(Items { tuples, count, item }) => tuples.of_cells(count, item),
-            Values::ItemBlocks(ItemBlocks { tuples, count, blocks, make }) => Self::Pieces {
-                byte_count: (count * tuples.width()) as u64,
-                count: blocks,
-                at_once: 1,
-                make: Box::new(|block| {
-                    make(block).into_iter().flat_map(|item| tuples.of(item)).copied().collect()
-                }),
-            },
-        }
+    /// Ids that follow from their positions, of 64 bits where `wide` asks for that: where 32 do not hold them.
+    #[expect(clippy::cast_possible_truncation, reason = "ids are wide where 32 bits do not hold them")]
+    pub(super) fn ids(count: usize, id: impl Fn(usize) -> u64 + Send + Sync + 'a, wide: bool) -> Self {
+        if wide { Self::each(count, id) } else { Self::each(count, move |index| id(index) as u32) }
+    }
+
+    /// So many bytes, made block by block. Blocks are large, and each is made in parallel.
+    pub(super) fn blocks(
+        byte_count: usize,
+        count: usize,
+        make: impl Fn(usize) -> Vec<u8> + Send + Sync + 'a,
+    ) -> Self {
+        Self::Pieces { byte_count: byte_count as u64, count, at_once: 1, make: Arc::new(make) }
     }
 
     fn byte_count(&self) -> u64 {
@@ -156,7 +140,7 @@ impl<'a> Numbers<'a> {
             Self::Pieces { count, at_once, make, .. } => {
                 for first in (0..*count).step_by(*at_once) {
                     let pieces = first..(first + at_once).min(*count);
-                    let made: Vec<Vec<u8>> = pieces.into_par_iter().map(make).collect();
+                    let made: Vec<Vec<u8>> = pieces.into_par_iter().map(|piece| make(piece)).collect();
                     made.into_iter().try_for_each(|mut piece| use_block(&mut piece))?;
                 }
             }

@@ -1,13 +1,12 @@
 //! The XML formats .vtp and .vtu.
 //!
-//! `vtkio` writes the document, and we its numbers, straight from our arrays. The conversion from [`vtkio::Vtk`] would
+//! We write the document and its numbers straight from our arrays. The conversion from [`vtkio::Vtk`] would
 //! widen ids to 64 bits, drop field data, and take many times as long.
 
 use std::io::{self, Write};
 
 use super::raw::NumbersOfFile;
 use super::{PolyData, VtkEncoding};
-use document::Document;
 
 mod document;
 
@@ -31,7 +30,6 @@ pub(super) fn write(
         return Err(io::Error::other("PolyData holds no tetrahedra; write an unstructured grid"));
     }
     let mut numbers = NumbersOfFile::new(encoding);
-    let document = Document::new(data, format, &mut numbers);
-    let document = vtkio::xml::se::to_string(&document).map_err(io::Error::other)?;
-    numbers.write_file(document.trim_end_matches("</VTKFile>"), out)
+    let document = document::document(data, format, &mut numbers);
+    numbers.write_file(document, out)
 }

@@ -44,7 +44,7 @@ impl MeshFormat {
 }
 
 /// A mesh and what is known about it: the content of a file.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct MeshToWrite<'a> {
     /// Coordinates of each point.
     pub points: &'a [DVec3],
@@ -110,9 +110,8 @@ pub fn stage_mesh(
 }
 
 fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
-    let normals = mesh.normals.map(|normals| Array { name: "Normals", values: Values::Vectors(normals) });
-    let generations = mesh.generations.map(|g| Array { name: "Generation", values: Values::Int8(g) });
-    let data = |array: &'a DataArray| Array { name: &array.name, values: Values::Data(array) };
+    let normals = mesh.normals.map(|normals| Array { name: "Normals", values: Values::slice(normals) });
+    let generations = mesh.generations.map(|g| Array { name: "Generation", values: Values::slice(g) });
     let text = |name, value: String| FieldEntry { name, value: FieldValue::Text(value) };
     PolyData {
         points: mesh.points,
@@ -120,9 +119,9 @@ fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
         point_arrays: normals
             .into_iter()
             .chain(generations)
-            .chain(mesh.point_data.iter().map(data))
+            .chain(mesh.point_data.iter().map(DataArray::array))
             .collect(),
-        cell_arrays: mesh.cell_data.iter().map(data).collect(),
+        cell_arrays: mesh.cell_data.iter().map(DataArray::array).collect(),
         field: [
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
             text("CommandLine", mesh.command_line.to_owned()),
@@ -137,7 +136,7 @@ fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
 fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<()>) -> io::Result<()> {
     match cells {
         Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
-        Cells::TrianglesOf(each) => (0..each.count).try_for_each(|cell| visit(&(each.value)(cell))),
+        Cells::TrianglesOf { count, triangle } => (0..count).try_for_each(|cell| visit(&triangle(cell))),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
         Cells::Tetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
         Cells::QuadraticTetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
@@ -207,7 +206,7 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
     refuse_polylines(mesh.cells, "STL")?;
     let triangles: Vec<[u32; 3]> = match mesh.cells {
         Cells::Triangles(triangles) => triangles.to_vec(),
-        Cells::TrianglesOf(each) => (0..each.count).map(each.value).collect(),
+        Cells::TrianglesOf { count, triangle } => (0..count).map(triangle).collect(),
         Cells::Polygons(polygons) => subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?.0,
         Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {
             Vec::new()

@@ -7,7 +7,7 @@ use voronoi::Dimension;
 
 use super::shown::{GrainFacts, ShownNetwork};
 use crate::LabelledFile;
-use crate::vtk::{DataArray, DataNumbers};
+use crate::vtk::DataArray;
 
 /// A fact of each grain.
 #[derive(Debug, Serialize)]
@@ -86,14 +86,4 @@ pub(super) fn components(array: &DataArray) -> Vec<String> {
         _ => format!("{} {part}", array.name),
     };
     (0..array.components).map(part).collect()
-}
-
-/// All numbers of an array.
-pub(super) fn numbers(array: &DataArray) -> Vec<f64> {
-    match &array.numbers {
-        DataNumbers::Int8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
-        DataNumbers::UInt8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
-        DataNumbers::Int32(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
-        DataNumbers::Float64(numbers) => numbers.clone(),
-    }
 }

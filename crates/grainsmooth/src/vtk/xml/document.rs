@@ -1,18 +1,14 @@
 //! The elements of an XML file, named and ordered as VTK wants them.
 //!
-//! `vtkio` has the same tree, but without field data and with parts that only its own conversion can fill;
-//! from it come the names of types and the serializer.
+//! `vtkio` has the same tree, but without field data and with parts that only its own conversion can fill.
 
-use serde::Serialize;
-use vtkio::model::ByteOrder;
-use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
+use quick_xml::escape::escape;
+use vtkio::xml::ScalarType;
 
+use super::super::image::head;
 use super::super::raw::{Numbers, NumbersOfFile};
-use super::super::{Array, Cells, Each, FieldEntry, FieldValue, NORMALS, PolyData, is_normals};
+use super::super::{Array, Cells, FieldEntry, FieldValue, NORMALS, PolyData, Values, is_normals};
 use super::XmlFormat;
-
-/// The one file version that VTK, ParaView, pyvista and meshio all read.
-const VERSION: &str = "1.0";
 
 /// VTK's codes for the kinds of cell.
 const VERTEX: u8 = 1;
@@ -22,191 +18,62 @@ const POLYGON: u8 = 7;
 const TETRAHEDRON: u8 = 10;
 const QUADRATIC_TETRAHEDRON: u8 = 24;
 
-#[derive(Serialize)]
-#[serde(rename = "VTKFile")]
-pub(super) struct Document {
-    #[serde(rename = "@type")]
-    data_set_type: DataSetType,
-    #[serde(rename = "@version")]
-    version: &'static str,
-    #[serde(rename = "@byte_order")]
-    byte_order: ByteOrder,
-    #[serde(rename = "@header_type")]
-    header_type: ScalarType,
-    #[serde(rename = "@compressor", skip_serializing_if = "Option::is_none")]
-    compressor: Option<&'static str>,
-    #[serde(rename = "$value")]
-    data_set: DataSet,
+/// The elements of a file but for the last tag, whose arrays are listed in `numbers`.
+pub(super) fn document<'a>(
+    data: &PolyData<'a>,
+    format: XmlFormat,
+    numbers: &mut NumbersOfFile<'a>,
+) -> String {
+    let (kind, cells) = match (format, data.cells) {
+        (XmlFormat::UnstructuredGrid, _) => ("UnstructuredGrid", "Cells"),
+        (XmlFormat::PolyData, Cells::Polylines(_)) => ("PolyData", "Lines"),
+        (XmlFormat::PolyData, Cells::Vertices(_)) => ("PolyData", "Verts"),
+        // Tetrahedra do not come here: `write` refuses them.
+        (XmlFormat::PolyData, _) => ("PolyData", "Polys"),
+    };
+    let field: String = data.field.iter().map(|entry| field(entry, format, numbers)).collect();
+    let points = Array { name: "Points", values: Values::slice(data.points) };
+    let points = elements(&[points], numbers);
+    let (of_points, of_cells) = (elements(&data.point_arrays, numbers), elements(&data.cell_arrays, numbers));
+    let topology = elements(&topology(data, format), numbers);
+    let shaded = |arrays: &[Array<'_>]| match arrays.iter().any(is_normals) {
+        true => format!(" Normals=\"{NORMALS}\""),
+        false => String::new(),
+    };
+    format!(
+        "{}<{kind}><FieldData>{field}</FieldData>\
+         <Piece NumberOfPoints=\"{}\" NumberOf{cells}=\"{}\">\
+         <PointData{}>{of_points}</PointData><CellData{}>{of_cells}</CellData>\
+         <Points>{points}</Points><{cells}>{topology}</{cells}></Piece></{kind}>",
+        head(kind, numbers),
+        data.points.len(),
+        data.cells.len(),
+        shaded(&data.point_arrays),
+        shaded(&data.cell_arrays),
+    )
 }
 
-#[derive(Serialize)]
-enum DataSet {
-    PolyData(Grid),
-    UnstructuredGrid(Grid),
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct Grid {
-    field_data: Arrays,
-    piece: Piece,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct Piece {
-    #[serde(rename = "@NumberOfPoints")]
-    number_of_points: usize,
-    #[serde(rename = "@NumberOfVerts", skip_serializing_if = "Option::is_none")]
-    number_of_verts: Option<usize>,
-    #[serde(rename = "@NumberOfLines", skip_serializing_if = "Option::is_none")]
-    number_of_lines: Option<usize>,
-    #[serde(rename = "@NumberOfPolys", skip_serializing_if = "Option::is_none")]
-    number_of_polys: Option<usize>,
-    #[serde(rename = "@NumberOfCells", skip_serializing_if = "Option::is_none")]
-    number_of_cells: Option<usize>,
-    point_data: Arrays,
-    cell_data: Arrays,
-    points: Arrays,
-    #[serde(rename = "$value")]
-    topology: Topology,
-}
-
-#[derive(Serialize)]
-enum Topology {
-    Verts(Arrays),
-    Lines(Arrays),
-    Polys(Arrays),
-    Cells(Arrays),
-}
-
-#[derive(Serialize)]
-struct Arrays {
-    /// The array that viewers shade with.
-    #[serde(rename = "@Normals", skip_serializing_if = "Option::is_none")]
-    normals: Option<&'static str>,
-    #[serde(rename = "$value")]
-    arrays: Vec<Element>,
-}
-
-#[derive(Serialize)]
-enum Element {
-    DataArray(Header<ScalarType>),
-    /// VTK's element for arrays of anything but numbers.
-    Array(Header<NotNumeric>),
-}
-
-#[derive(Serialize)]
-enum NotNumeric {
-    String,
-}
-
-/// What an array is; its numbers are appended.
-#[derive(Serialize)]
-struct Header<Type> {
-    #[serde(rename = "@type")]
-    value_type: Type,
-    #[serde(rename = "@Name")]
-    name: String,
-    #[serde(rename = "@NumberOfComponents")]
-    number_of_components: usize,
-    /// Only field data need this: other arrays have as many tuples as there are points or cells.
-    #[serde(rename = "@NumberOfTuples", skip_serializing_if = "Option::is_none")]
-    number_of_tuples: Option<usize>,
-    #[serde(rename = "@format")]
-    format: DataArrayFormat,
-    #[serde(rename = "@offset")]
-    offset: u64,
-}
-
-impl Arrays {
-    fn new(arrays: Vec<Element>) -> Self {
-        Self { normals: None, arrays }
-    }
-}
-
-impl Document {
-    /// Describes `data` and lists its arrays in `numbers`.
-    pub(super) fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
-        let grid = Grid {
-            field_data: Arrays::new(data.field.iter().map(|entry| field(entry, format, numbers)).collect()),
-            piece: Piece::new(data, format, numbers),
+/// The arrays that tell which points are in which cell.
+fn topology<'a>(data: &PolyData<'a>, format: XmlFormat) -> Vec<Array<'a>> {
+    // VTK's ids are signed, and both arrays must have the same width.
+    let largest = data.points.len().max(data.cells.corner_count());
+    let wide = i32::try_from(largest).is_err();
+    let id_type = if wide { ScalarType::Int64 } else { ScalarType::Int32 };
+    let (connectivity, ends) = cell_ids(data.cells, wide);
+    let ids = |name, numbers| Array { name, values: Values::new(id_type, 1, 0, numbers) };
+    let mut arrays = vec![ids("connectivity", connectivity), ids("offsets", ends)];
+    if format == XmlFormat::UnstructuredGrid {
+        let kind = match data.cells {
+            Cells::Triangles(_) | Cells::TrianglesOf { .. } => TRIANGLE,
+            Cells::Polygons(_) => POLYGON,
+            Cells::Polylines(_) => POLY_LINE,
+            Cells::Vertices(_) => VERTEX,
+            Cells::Tetrahedra(_) => TETRAHEDRON,
+            Cells::QuadraticTetrahedra(_) => QUADRATIC_TETRAHEDRON,
         };
-        let (data_set_type, data_set) = match format {
-            XmlFormat::PolyData => (DataSetType::PolyData, DataSet::PolyData(grid)),
-            XmlFormat::UnstructuredGrid => (DataSetType::UnstructuredGrid, DataSet::UnstructuredGrid(grid)),
-        };
-        Self {
-            data_set_type,
-            version: VERSION,
-            byte_order: ByteOrder::native(),
-            header_type: ScalarType::UInt64,
-            compressor: numbers.compressor(),
-            data_set,
-        }
+        arrays.push(Array { name: "types", values: Values::each(data.cells.len(), move |_| kind) });
     }
-}
-
-impl Piece {
-    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
-        let points = array("Points", ScalarType::Float64, 3, numbers.append(Numbers::slice(data.points)));
-        let mut piece = Self {
-            number_of_points: data.points.len(),
-            number_of_verts: None,
-            number_of_lines: None,
-            number_of_polys: None,
-            number_of_cells: None,
-            point_data: attributes(&data.point_arrays, numbers),
-            cell_data: attributes(&data.cell_arrays, numbers),
-            points: Arrays::new(vec![points]),
-            topology: Topology::new(data, format, numbers),
-        };
-        let number_of = match piece.topology {
-            Topology::Verts(_) => &mut piece.number_of_verts,
-            Topology::Lines(_) => &mut piece.number_of_lines,
-            Topology::Polys(_) => &mut piece.number_of_polys,
-            Topology::Cells(_) => &mut piece.number_of_cells,
-        };
-        *number_of = Some(data.cells.len());
-        piece
-    }
-}
-
-impl Topology {
-    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
-        // VTK's ids are signed, and both arrays must have the same width.
-        let largest = data.points.len().max(data.cells.corner_count());
-        let wide = i32::try_from(largest).is_err();
-        let id_type = if wide { ScalarType::Int64 } else { ScalarType::Int32 };
-        let (connectivity, ends) = cell_ids(data.cells, wide);
-        let mut arrays = vec![
-            array("connectivity", id_type, 1, numbers.append(connectivity)),
-            array("offsets", id_type, 1, numbers.append(ends)),
-        ];
-        match (format, data.cells) {
-            (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays::new(arrays)),
-            (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays::new(arrays)),
-            // Tetrahedra do not come here: `write` refuses them.
-            (XmlFormat::PolyData, _) => Self::Polys(Arrays::new(arrays)),
-            (XmlFormat::UnstructuredGrid, cells) => {
-                let kind = match cells {
-                    Cells::Triangles(_) | Cells::TrianglesOf(_) => TRIANGLE,
-                    Cells::Polygons(_) => POLYGON,
-                    Cells::Polylines(_) => POLY_LINE,
-                    Cells::Vertices(_) => VERTEX,
-                    Cells::Tetrahedra(_) => TETRAHEDRON,
-                    Cells::QuadraticTetrahedra(_) => QUADRATIC_TETRAHEDRON,
-                };
-                arrays.push(array(
-                    "types",
-                    ScalarType::UInt8,
-                    1,
-                    numbers.append(Numbers::each(cells.len(), move |_| kind)),
-                ));
-                Self::Cells(Arrays::new(arrays))
-            }
-        }
-    }
+    arrays
 }
 
 /// The point ids of all cells in a row, and where in that row each cell ends.
@@ -215,13 +82,12 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
         Cells::Triangles(triangles) => ids_of_alike(triangles, wide),
         Cells::Tetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
         Cells::QuadraticTetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
-        Cells::TrianglesOf(Each { count, value }) => {
+        Cells::TrianglesOf { count, triangle } => {
             let connectivity = match wide {
-                false => Numbers::each(count, value),
-                true => Numbers::each(count, move |triangle| value(triangle).map(i64::from)),
+                false => Numbers::each(count, triangle),
+                true => Numbers::each(count, move |index| triangle(index).map(i64::from)),
             };
-            let end = |cell: usize| 3 * (cell as u64 + 1);
-            (connectivity, ids(count, end, wide))
+            (connectivity, Numbers::ids(count, |cell| 3 * (cell as u64 + 1), wide))
         }
         Cells::Polygons(cells) | Cells::Polylines(cells) => {
             let corners: Vec<u32> = cells.iter().flatten().copied().collect();
@@ -234,10 +100,10 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
                 .collect();
             let corner = move |index: usize| u64::from(corners[index]);
             let count = usize::try_from(ends.last().copied().unwrap_or(0)).expect("as many as in memory");
-            (ids(count, corner, wide), ids(ends.len(), move |cell: usize| ends[cell], wide))
+            (Numbers::ids(count, corner, wide), Numbers::ids(ends.len(), move |cell: usize| ends[cell], wide))
         }
         Cells::Vertices(count) => {
-            (ids(count, |cell| cell as u64, wide), ids(count, |cell| cell as u64 + 1, wide))
+            (Numbers::ids(count, |cell| cell as u64, wide), Numbers::ids(count, |cell| cell as u64 + 1, wide))
         }
     }
 }
@@ -249,82 +115,47 @@ fn ids_of_alike<const N: usize>(cells: &[[u32; N]], wide: bool) -> (Numbers<'_>,
         false => Numbers::slice(corners),
         true => Numbers::each(corners.len(), |corner| i64::from(corners[corner])),
     };
-    (connectivity, ids(cells.len(), |cell| N as u64 * (cell as u64 + 1), wide))
+    (connectivity, Numbers::ids(cells.len(), |cell| N as u64 * (cell as u64 + 1), wide))
 }
 
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the caller asks for wide ids where 32 bits do not hold them"
-)]
-fn ids<'a>(count: usize, id: impl Fn(usize) -> u64 + Sync + 'a, wide: bool) -> Numbers<'a> {
-    if wide { Numbers::each(count, id) } else { Numbers::each(count, move |index| id(index) as u32) }
+/// The elements of arrays, which have a tuple for each point or cell.
+fn elements<'a>(arrays: &[Array<'a>], numbers: &mut NumbersOfFile<'a>) -> String {
+    let element = |Array { name, values }: &Array<'a>| {
+        let offset = numbers.append(values.numbers.clone());
+        element("DataArray", &format!("{:?}", values.kind), name, values.components, None, offset)
+    };
+    arrays.iter().map(element).collect()
 }
 
-fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut NumbersOfFile<'a>) -> Arrays {
-    let elements = arrays.iter().map(|Array { name, values }| {
-        array(name, values.scalar_type(), values.component_count(), numbers.append(Numbers::of(*values)))
-    });
-    let elements = elements.collect();
-    Arrays { normals: arrays.iter().any(is_normals).then_some(NORMALS), ..Arrays::new(elements) }
-}
-
-fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>) -> Element {
-    match (&entry.value, format) {
-        (FieldValue::Integer(number), _) => {
-            let offset = numbers.append(Numbers::bytes(number.to_ne_bytes().to_vec()));
-            Element::DataArray(Header::new(entry.name, ScalarType::UInt64, 1, offset).with_tuples(1))
-        }
-        (FieldValue::Numbers(values), _) => {
-            let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(values).to_vec()));
-            Element::DataArray(
-                Header::new(entry.name, ScalarType::Float64, 1, offset).with_tuples(values.len()),
-            )
-        }
-        (FieldValue::Ids(ids), _) => {
-            let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(ids).to_vec()));
-            Element::DataArray(Header::new(entry.name, ScalarType::Int32, 1, offset).with_tuples(ids.len()))
-        }
-        (FieldValue::Items(tuples), _) => {
-            let offset = numbers.append(Numbers::bytes(tuples.all().to_vec()));
-            let header = Header::new(entry.name, tuples.kind, tuples.components, offset);
-            Element::DataArray(header.with_tuples(tuples.len()))
-        }
-        (FieldValue::Data(array), _) => {
-            let offset = numbers.append(Numbers::bytes(array.to_bytes()));
-            let header = Header::new(entry.name, array.kind(), array.components, offset);
-            Element::DataArray(header.with_tuples(array.len()))
-        }
-        (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
-            let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
-            Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
-        }
-        (FieldValue::Text(text), XmlFormat::PolyData) => {
-            let offset = numbers.append(Numbers::bytes(format!("{text}\0").into_bytes()));
-            Element::Array(Header::new(entry.name, NotNumeric::String, 1, offset).with_tuples(1))
-        }
+fn field(
+    FieldEntry { name, value }: &FieldEntry,
+    format: XmlFormat,
+    numbers: &mut NumbersOfFile<'_>,
+) -> String {
+    let (kind, components, bytes) = value.numbers();
+    if matches!(value, FieldValue::Text(_)) && format == XmlFormat::PolyData {
+        let offset = numbers.append(Numbers::bytes([bytes, b"\0"].concat()));
+        return element("Array", "String", name, 1, Some(1), offset);
     }
+    let offset = numbers.append(Numbers::bytes(bytes.to_vec()));
+    let count = bytes.len() / (kind.size() * components);
+    element("DataArray", &format!("{kind:?}"), name, components, Some(count), offset)
 }
 
-fn array(name: &str, scalar_type: ScalarType, number_of_components: usize, offset: u64) -> Element {
-    Element::DataArray(Header::new(name, scalar_type, number_of_components, offset))
-}
-
-impl<Type> Header<Type> {
-    fn new(name: &str, value_type: Type, number_of_components: usize, offset: u64) -> Self {
-        let format = DataArrayFormat::Appended;
-        Self {
-            value_type,
-            name: name.to_owned(),
-            number_of_components,
-            number_of_tuples: None,
-            format,
-            offset,
-        }
-    }
-
-    fn with_tuples(self, count: usize) -> Self {
-        Self { number_of_tuples: Some(count), ..self }
-    }
+/// An element whose numbers stand behind the document. Only field data need their number of tuples.
+fn element(
+    element: &str,
+    kind: &str,
+    name: &str,
+    components: usize,
+    tuples: Option<usize>,
+    offset: u64,
+) -> String {
+    let tuples = tuples.map_or_else(String::new, |count| format!(" NumberOfTuples=\"{count}\""));
+    let name = escape(name);
+    format!(
+        "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"{tuples} format=\"appended\" offset=\"{offset}\"/>"
+    )
 }
 
 #[cfg(test)]
