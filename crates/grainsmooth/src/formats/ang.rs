@@ -9,21 +9,18 @@ use polycrystal::Side;
 use texture::{CrystalSymmetry, Orientation};
 use voronoi::Dimension;
 
-use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, HEAD, TEXT_POINT, Writer};
 use super::orientation_map::OrientationMap;
 use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "ang",
-    programs: "",
     content: Content::Voxels(|_| 0),
-    dimension: Some(Dimension::Two),
-    beside: None,
     bytes: |size| HEAD + TEXT_POINT * size.voxels(),
     write: Writer::File(|polycrystal, out| {
         OrientationMap::of(polycrystal, |map| write(map, polycrystal.provenance(), out))
     }),
-    write_grain: None,
+    extra: Extra { dimension: Some(Dimension::Two), ..Extra::NONE },
 };
 
 /// In place of each Euler angle where there is none.

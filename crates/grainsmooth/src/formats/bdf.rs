@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use voronoi::Dimension;
 
-use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::Polycrystal;
 
 /// Characters of a number in an entry's wide fields.
@@ -18,13 +18,10 @@ const OF_LINE: usize = 8;
 /// Some three tetrahedra for each triangle, with half a node each.
 pub(super) const FORMAT: Format = Format {
     extension: "bdf",
-    programs: "Nastran",
     content: Content::Tetrahedra,
-    dimension: Some(Dimension::Three),
-    beside: None,
     bytes: |size| HEAD + (2 * TEXT_POINT + 6 * TEXT_CORNERS) * size.mesh.triangles,
     write: Writer::File(write),
-    write_grain: None,
+    extra: Extra { programs: "Nastran", dimension: Some(Dimension::Three), ..Extra::NONE },
 };
 
 /// Writes grid points, tetrahedra, and properties: grain 0 is property 1. Their materials count phases from 1, and are for the user to say.

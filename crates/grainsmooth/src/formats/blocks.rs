@@ -9,7 +9,7 @@ use polycrystal::{BoundaryId, GrainId, Mesh, Side};
 use quick_xml::escape::escape;
 use rayon::prelude::*;
 
-use super::format::{Beside, Content, Format, Writer};
+use super::format::{Beside, Content, Extra, Format, Writer};
 use super::grains::GrainMeasure;
 use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
@@ -31,17 +31,14 @@ const BLOCKS: [&str; 4] = ["boundaries", "grains", "triple_lines", "quadruple_po
 
 pub(super) const FORMAT: Format = Format {
     extension: "vtm",
-    programs: "",
     content: Content::Boundaries,
-    dimension: None,
-    beside: Some(Beside::Folder),
     bytes: |size| {
         let LevelSize { points, triangles, .. } = size.mesh;
         // Boundaries have normals, and every triangle comes at two grains, with five arrays.
         size.encoded(size.of_network() + 27 * points + 2 * (24 * points + 48 * triangles), COMPRESSED)
     },
     write: Writer::Files(Polycrystal::stage_blocks),
-    write_grain: None,
+    extra: Extra { beside: Some(Beside::Folder), ..Extra::NONE },
 };
 
 impl Polycrystal {

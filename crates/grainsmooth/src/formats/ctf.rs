@@ -6,19 +6,16 @@ use polycrystal::Side;
 use voronoi::Dimension;
 
 use super::ang::lattice_constants;
-use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, HEAD, TEXT_POINT, Writer};
 use super::orientation_map::OrientationMap;
 use crate::maps::orientation_map::hkl::{LAUE_GROUPS, hkl_turn};
 
 pub(super) const FORMAT: Format = Format {
     extension: "ctf",
-    programs: "",
     content: Content::Voxels(|_| 0),
-    dimension: Some(Dimension::Two),
-    beside: None,
     bytes: |size| HEAD + TEXT_POINT * size.voxels(),
     write: Writer::File(|polycrystal, out| OrientationMap::of(polycrystal, |map| write(map, out))),
-    write_grain: None,
+    extra: Extra { dimension: Some(Dimension::Two), ..Extra::NONE },
 };
 
 /// Writes the map: one line a pixel, x fastest; angles in degrees, coordinates in the user's unit of length.

@@ -4,21 +4,18 @@ use std::io::{self, Write};
 
 use texture::Orientation;
 
-use super::format::{Content, Format, HEAD, Writer};
+use super::format::{Content, Extra, Format, HEAD, Writer};
 use crate::{GrainPhases, Provenance};
 
 pub(super) const FORMAT: Format = Format {
     extension: "txt",
-    programs: "",
     content: Content::Orientations,
-    dimension: None,
-    beside: None,
     bytes: |size| HEAD + OF_GRAIN * size.grains,
     write: Writer::File(|polycrystal, out| {
         let (volumes, phases) = (polycrystal.network.cell_volumes(), polycrystal.grains().phases.as_ref());
         write(polycrystal.texture()?.orientations(), volumes, phases, polycrystal.provenance(), out)
     }),
-    write_grain: None,
+    extra: Extra::NONE,
 };
 
 /// Bytes of a grain: three or four numbers of 20 characters.

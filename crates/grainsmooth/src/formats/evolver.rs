@@ -10,19 +10,16 @@ use glam::DVec3;
 use polycrystal::{Network, Side};
 use voronoi::{Dimension, Domain, Wall};
 
-use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::surface::{Part, side_name, write_seed_comments};
 use crate::Polycrystal;
 
 pub(super) const FORMAT: Format = Format {
     extension: "fe",
-    programs: "Surface Evolver",
     content: Content::Boundaries,
-    dimension: Some(Dimension::Three),
-    beside: None,
     bytes: |size| TEXT_POINT * size.mesh.points + TEXT_CORNERS * (size.mesh.edges + size.mesh.triangles),
     write: Writer::File(write),
-    write_grain: None,
+    extra: Extra { programs: "Surface Evolver", dimension: Some(Dimension::Three), ..Extra::NONE },
 };
 
 /// Writes the file; each point stays on its walls, and each body keeps its volume.

@@ -22,17 +22,26 @@ pub(super) const TEXT_CORNERS: u128 = 24;
 pub(crate) struct Format {
     /// Without its dot.
     pub(super) extension: &'static str,
-    /// The programs that it is for, as `--help` names them; nothing where it is for many.
-    pub(super) programs: &'static str,
     pub(super) content: Content,
-    /// The only dimension that it can hold, if there is such a one.
-    pub(super) dimension: Option<Dimension>,
-    pub(super) beside: Option<Beside>,
     /// About how many bytes it takes.
     pub(super) bytes: fn(&FileSize<'_>) -> u128,
     pub(super) write: Writer,
+    pub(super) extra: Extra,
+}
+
+/// What only some formats have.
+pub(super) struct Extra {
+    /// The programs that it is for, as `--help` names them; nothing where it is for many.
+    pub(super) programs: &'static str,
+    /// The only dimension that it can hold, if there is such a one.
+    pub(super) dimension: Option<Dimension>,
+    pub(super) beside: Option<Beside>,
     /// Writes a grain's closed surface, where the format is for such files.
     pub(super) write_grain: Option<GrainWriter>,
+}
+
+impl Extra {
+    pub(super) const NONE: Self = Self { programs: "", dimension: None, beside: None, write_grain: None };
 }
 
 /// What a format holds.

@@ -19,7 +19,7 @@ use polycrystal::BoundaryId;
 use voronoi::Dimension;
 
 use super::connected::{ConnectedParts, pieces_of_grain};
-use super::format::{Beside, Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Beside, Content, Extra, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::lines::Junctions;
 use super::surface::{Surface, side_name, write_seed_comments};
 use crate::files::output::OutputPath;
@@ -35,13 +35,15 @@ const SCRIPT: &str = "geo";
 
 pub(super) const FORMAT: Format = Format {
     extension: "msh",
-    programs: "Gmsh",
     content: Content::BoundariesOrTetrahedra,
-    dimension: Some(Dimension::Three),
-    beside: Some(Beside::File(SCRIPT)),
     bytes: |size| TEXT_POINT * size.mesh.points + (TEXT_CORNERS + 8) * size.mesh.triangles,
     write: Writer::Files(stage),
-    write_grain: None,
+    extra: Extra {
+        programs: "Gmsh",
+        dimension: Some(Dimension::Three),
+        beside: Some(Beside::File(SCRIPT)),
+        ..Extra::NONE
+    },
 };
 
 fn stage(polycrystal: &Polycrystal, output: &OutputPath<()>, files: &mut StagedFiles) -> Result<(), Error> {

@@ -12,22 +12,19 @@ use std::io::{self, Write};
 use glam::DVec3;
 use texture::CrystalSymmetry;
 
-use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::{GrainAttributes, Polycrystal};
 
 /// A node and an element for each voxel, and its number in a set; or some three tetrahedra for each triangle, with half a node each.
 pub(super) const FORMAT: Format = Format {
     extension: "inp",
-    programs: "Abaqus, CalculiX",
     content: Content::Elements,
-    dimension: None,
-    beside: None,
     bytes: |size| match size.voxels() {
         0 => HEAD + (2 * TEXT_POINT + 4 * TEXT_CORNERS) * size.mesh.triangles,
         voxels => HEAD + (TEXT_POINT + 3 * TEXT_CORNERS) * voxels,
     },
     write: Writer::File(write),
-    write_grain: None,
+    extra: Extra { programs: "Abaqus, CalculiX", ..Extra::NONE },
 };
 
 /// Most numbers in a line of a set.

@@ -6,20 +6,17 @@ use std::io::{self, Write};
 
 use texture::CrystalSymmetry;
 
-use super::format::{Content, Format, HEAD, Writer};
+use super::format::{Content, Extra, Format, HEAD, Writer};
 use crate::{GrainAttributes, GrainTexture, Provenance};
 
 pub(super) const FORMAT: Format = Format {
     extension: "yaml",
-    programs: "DAMASK",
     content: Content::Orientations,
-    dimension: None,
-    beside: None,
     bytes: |size| HEAD + 160 * size.grains,
     write: Writer::File(|polycrystal, out| {
         write(polycrystal.grains(), polycrystal.texture()?, polycrystal.provenance(), out)
     }),
-    write_grain: None,
+    extra: Extra { programs: "DAMASK", ..Extra::NONE },
 };
 
 /// The name of the one phase where none are asked for.

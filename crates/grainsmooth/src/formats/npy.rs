@@ -6,22 +6,19 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 
-use super::format::{Content, Format, HEAD, Writer};
+use super::format::{Content, Extra, Format, HEAD, Writer};
 use super::label_grid::LabelGrid;
 use crate::names::Names;
 
 pub(super) const FORMAT: Format = Format {
     extension: "npy",
-    programs: "",
     content: Content::Voxels(|_| 4),
-    dimension: None,
-    beside: None,
     bytes: |size| HEAD + 4 * size.voxels(),
     write: Writer::File(|polycrystal, out| {
         write(&polycrystal.label_grid()?, polycrystal.file().names, out)?;
         polycrystal.write_settings_behind(out)
     }),
-    write_grain: None,
+    extra: Extra::NONE,
 };
 
 /// Header and magic together must be a multiple of this.

@@ -5,21 +5,24 @@ use std::io::{self, Write};
 use glam::DVec3;
 use voronoi::Dimension;
 
-use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::surface::{Surface, side_name, write_seed_comments};
 use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "obj",
-    programs: "",
     content: Content::Boundaries,
-    dimension: Some(Dimension::Three),
-    beside: None,
     bytes: |size| TEXT_POINT * size.mesh.points + TEXT_CORNERS * size.mesh.triangles,
     write: Writer::File(|polycrystal, out| {
         write(&polycrystal.surface()?, polycrystal.provenance(), polycrystal.grains().renumbered(), out)
     }),
-    write_grain: Some(|file, out| write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)),
+    extra: Extra {
+        dimension: Some(Dimension::Three),
+        write_grain: Some(|file, out| {
+            write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)
+        }),
+        ..Extra::NONE
+    },
 };
 
 /// Writes all points, in the fewest digits that give the same number back, then the boundaries.

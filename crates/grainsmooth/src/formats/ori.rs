@@ -5,17 +5,14 @@ use std::io::{self, Write};
 use texture::Orientation;
 
 use super::euler::OF_GRAIN;
-use super::format::{Content, Format, Writer};
+use super::format::{Content, Extra, Format, Writer};
 
 pub(super) const FORMAT: Format = Format {
     extension: "ori",
-    programs: "Neper",
     content: Content::Orientations,
-    dimension: None,
-    beside: None,
     bytes: |size| OF_GRAIN * size.grains,
     write: Writer::File(|polycrystal, out| write(polycrystal.texture()?.orientations(), out)),
-    write_grain: None,
+    extra: Extra { programs: "Neper", ..Extra::NONE },
 };
 
 /// The least scalar part that is divided by: a half turn has none, and its vector would be infinite.

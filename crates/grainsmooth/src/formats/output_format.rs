@@ -78,7 +78,7 @@ impl OutputFormat {
 
     /// The extensions with the programs that they are for, as `--help` lists them: `.vtp, .msh (Gmsh)`.
     pub fn described() -> String {
-        let described = Self::ALL.iter().map(|Self(format)| match format.programs {
+        let described = Self::ALL.iter().map(|Self(format)| match format.extra.programs {
             "" => format!(".{}", format.extension),
             programs => format!(".{} ({programs})", format.extension),
         });
@@ -87,7 +87,7 @@ impl OutputFormat {
 
     /// The formats that a grain's own surface may have.
     pub fn of_grains() -> impl Iterator<Item = Self> {
-        Self::ALL.iter().copied().filter(|format| format.0.write_grain.is_some())
+        Self::ALL.iter().copied().filter(|format| format.0.extra.write_grain.is_some())
     }
 
     /// Whether the format holds voxels.
@@ -112,7 +112,7 @@ impl OutputFormat {
 
     /// What is written beside a file of this format, under its name.
     pub(crate) fn beside(self, path: &Path) -> Option<PathBuf> {
-        self.0.beside.map(|beside| match beside {
+        self.0.extra.beside.map(|beside| match beside {
             Beside::File(extension) => path.with_extension(extension),
             Beside::Folder => path.with_extension(""),
         })
@@ -120,7 +120,7 @@ impl OutputFormat {
 
     /// The same where it is a file.
     pub(crate) fn file_beside(self, path: &Path) -> Option<PathBuf> {
-        self.beside(path).filter(|_| matches!(self.0.beside, Some(Beside::File(_))))
+        self.beside(path).filter(|_| matches!(self.0.extra.beside, Some(Beside::File(_))))
     }
 
     /// About how many bytes a file takes.
@@ -146,7 +146,7 @@ impl OutputFormat {
     }
 
     pub(super) fn grain_writer(self) -> Option<GrainWriter> {
-        self.0.write_grain
+        self.0.extra.write_grain
     }
 
     /// Checks that the format can hold what there is to write, for an output that messages call `path`.
@@ -157,7 +157,7 @@ impl OutputFormat {
     pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
         let ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells, volume: _ } = *to_write;
         let path = || path.to_owned();
-        match (self.0.dimension, self.0.content) {
+        match (self.0.extra.dimension, self.0.content) {
             (Some(only), _) if only != dimension => {
                 Err(Error::FormatDimension { path: path(), dimension: only })
             }

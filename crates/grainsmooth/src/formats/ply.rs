@@ -4,21 +4,24 @@ use std::io::{self, Write};
 
 use voronoi::Dimension;
 
-use super::format::{Content, Format, Writer};
+use super::format::{Content, Extra, Format, Writer};
 use super::surface::{Surface, label, write_seed_comments};
 use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "ply",
-    programs: "",
     content: Content::Boundaries,
-    dimension: Some(Dimension::Three),
-    beside: None,
     bytes: |size| 24 * size.mesh.points + 25 * size.mesh.triangles,
     write: Writer::File(|polycrystal, out| {
         write(&polycrystal.surface()?, polycrystal.provenance(), polycrystal.grains().renumbered(), out)
     }),
-    write_grain: Some(|file, out| write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)),
+    extra: Extra {
+        dimension: Some(Dimension::Three),
+        write_grain: Some(|file, out| {
+            write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)
+        }),
+        ..Extra::NONE
+    },
 };
 
 /// Writes all points and triangles.

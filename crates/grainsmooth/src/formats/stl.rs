@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use voronoi::Dimension;
 
-use super::format::{Content, Format, GrainSurface, Writer};
+use super::format::{Content, Extra, Format, GrainSurface, Writer};
 use super::surface::Surface;
 use crate::mesh::file::stl::{TITLE_BYTES, check_range, write_binary};
 use crate::mesh::normal::unit_normal;
@@ -14,16 +14,13 @@ use crate::{Polycrystal, Provenance, StlEncoding};
 /// Every boundary once.
 pub(super) const FORMAT: Format = Format {
     extension: "stl",
-    programs: "",
     content: Content::Boundaries,
-    dimension: Some(Dimension::Three),
-    beside: None,
     bytes: |size| match size.config.file.stl {
         StlEncoding::Ascii => 270 * size.mesh.triangles,
         StlEncoding::Binary => 84 + 50 * size.mesh.triangles,
     },
     write: Writer::File(|polycrystal, out| write(&polycrystal.surface()?, "network", polycrystal, out)),
-    write_grain: Some(write_grain),
+    extra: Extra { dimension: Some(Dimension::Three), write_grain: Some(write_grain), ..Extra::NONE },
 };
 
 /// The first line of a text is cut by some readers (Gmsh) after 255 bytes; the rest would not be understood.

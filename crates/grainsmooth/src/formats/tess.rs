@@ -8,7 +8,7 @@ use std::io;
 use glam::DVec3;
 use voronoi::{CellId, Dimension, Side, Translation};
 
-use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::format::{Content, Extra, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::input::tess::{
     Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessSeed,
 };
@@ -21,10 +21,7 @@ use write::write;
 /// The flat cells. Of a Poisson-Voronoi cell's share there are 7 vertices, 14 edges and 8 faces of three lines.
 pub(super) const FORMAT: Format = Format {
     extension: "tess",
-    programs: "Neper",
     content: Content::Cells,
-    dimension: None,
-    beside: None,
     bytes: |size| size.grains * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
     write: Writer::File(|polycrystal, out| {
         let synthesis =
@@ -32,7 +29,7 @@ pub(super) const FORMAT: Format = Format {
         write(&Tess::new(&synthesis.cells), polycrystal.grains().texture.as_ref(), out)?;
         polycrystal.write_settings_behind(out)
     }),
-    write_grain: None,
+    extra: Extra { programs: "Neper", ..Extra::NONE },
 };
 
 impl Tess {

@@ -5,26 +5,23 @@ use std::io::{self, Write};
 use polycrystal::Side;
 use rayon::prelude::*;
 
-use super::format::{Content, Format, HEAD, Writer};
+use super::format::{Content, Extra, Format, HEAD, Writer};
 use crate::vtk::{Array, ImageData, ItemTuples, Values, VtkEncoding, write_vti};
 use crate::{FileOptions, GrainAttributes, GrainPhases, LabelGrid, Polycrystal};
 
 pub(super) const FORMAT: Format = Format {
     extension: "vti",
-    programs: "DAMASK",
     content: Content::Voxels(|config| match config.file.encoding {
         VtkEncoding::Zlib => 0,
         VtkEncoding::Raw | VtkEncoding::Base64 => config.bytes_of_voxel(),
     }),
-    dimension: None,
-    beside: None,
     bytes: |size| {
         let bytes = HEAD + u128::from(size.config.bytes_of_voxel()) * size.voxels();
         // Labels repeat: 200^3 voxels of 20 to 200 grains took 0.03 to 0.05 of theirs.
         size.encoded(bytes, [1, 25]).max(HEAD)
     },
     write: Writer::File(write),
-    write_grain: None,
+    extra: Extra { programs: "DAMASK", ..Extra::NONE },
 };
 
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {

@@ -1,6 +1,6 @@
 //! VTK's formats of one data set: every boundary and every point once.
 
-use super::format::{Content, Format, Writer};
+use super::format::{Content, Extra, Format, Writer};
 use super::grains::write_vtk_grain;
 use super::volume_vtu;
 use crate::vtk::VtkFormat;
@@ -10,36 +10,27 @@ pub(super) const COMPRESSED: [u128; 2] = [11, 20];
 
 pub(super) const VTP: Format = Format {
     extension: "vtp",
-    programs: "",
     content: Content::Boundaries,
-    dimension: None,
-    beside: None,
     bytes: |size| size.encoded(size.of_network(), COMPRESSED),
     write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtp, out)),
-    write_grain: Some(write_vtk_grain),
+    extra: Extra { write_grain: Some(write_vtk_grain), ..Extra::NONE },
 };
 
 pub(super) const VTU: Format = Format {
     extension: "vtu",
-    programs: "",
     content: Content::BoundariesOrTetrahedra,
-    dimension: None,
-    beside: None,
     bytes: |size| size.encoded(size.of_network() + size.mesh.triangles, COMPRESSED),
     write: Writer::File(|polycrystal, out| match polycrystal.tetrahedra_instead_of_boundaries() {
         Some(mesh) => volume_vtu::write(polycrystal, mesh, out),
         None => polycrystal.write_vtk(VtkFormat::Vtu, out),
     }),
-    write_grain: None,
+    extra: Extra::NONE,
 };
 
 pub(super) const VTK: Format = Format {
     extension: "vtk",
-    programs: "",
     content: Content::Boundaries,
-    dimension: None,
-    beside: None,
     bytes: |size| size.of_network(),
     write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtk, out)),
-    write_grain: None,
+    extra: Extra::NONE,
 };
