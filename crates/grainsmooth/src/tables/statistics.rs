@@ -11,6 +11,7 @@ use polycrystal::{GrainId, Measures, Side};
 use serde::Serialize;
 use voronoi::Dimension;
 
+use crate::formats::surface::label;
 use crate::names::{MOBILITY, PARENT, PHASE, SPREAD, TENSION, VOXEL_COUNT};
 use crate::tables::table::{Table, Value};
 use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
@@ -220,13 +221,13 @@ impl Distribution {
     }
 }
 
-/// Grains by number, the exterior as -1.
-fn side(side: &Side) -> i64 {
-    side.grain().map_or(-1, |grain| i64::from(grain.0))
+/// A grain by number, the exterior as -1.
+fn side(side: Side) -> Value {
+    Value::Integer(label(side))
 }
 
 fn sides(sides: &[Side]) -> Value {
-    Value::Integers(sides.iter().map(side).collect())
+    Value::Integers(sides.iter().copied().map(label).collect())
 }
 
 /// How many grains are among the sides that meet somewhere.
@@ -244,8 +245,4 @@ fn id(id: u32) -> Value {
 
 fn ids(ids: impl IntoIterator<Item = u32>) -> Value {
     Value::Integers(ids.into_iter().map(i64::from).collect())
-}
-
-fn numbers(values: impl IntoIterator<Item = f64>) -> impl Iterator<Item = Value> {
-    values.into_iter().map(Value::Number)
 }

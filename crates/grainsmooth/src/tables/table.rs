@@ -27,7 +27,17 @@ pub(crate) enum Value {
     Flag(bool),
 }
 
+/// A column's name, and its value for each row's item.
+type Column<'a, T> = (&'static str, &'a dyn Fn(&T) -> Value);
+
 impl Table {
+    /// A row for each item.
+    pub(crate) fn new<T>(items: &[T], columns: &[Column<'_, T>]) -> Self {
+        let row = |item: &T| columns.iter().map(|(_, value)| value(item)).collect();
+        let names = columns.iter().map(|(name, _)| *name).collect();
+        Self { columns: names, rows: items.iter().map(row).collect() }
+    }
+
     /// Adds a column behind the others, with a value for each row.
     pub(crate) fn add_column(&mut self, name: &'static str, value: impl Fn(&[Value]) -> Value) {
         self.columns.push(name);

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use polycrystal::{PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures, TriplePointMeasures};
 
-use super::{
-    Tables, add_angles, count, distributions, grain_count, id, ids, is_inside, numbers, side, sides,
-};
-use crate::tables::table::{Table, Value};
+use super::{Tables, add_angles, count, distributions, grain_count, id, ids, is_inside, side, sides};
+use crate::names::SEED_ID;
+use crate::tables::table::Table;
+use crate::tables::table::Value::{self, Number};
 
 pub(super) fn tables(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
     let PlaneMeasures { grains, boundaries, triple_points, .. } = measures;
@@ -33,76 +33,59 @@ pub(super) fn tables(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
 }
 
 fn grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
-    let row = |grain: &PlaneGrainMeasures| {
-        let [x, y] = [grain.second_moment.x_axis, grain.second_moment.y_axis];
-        let mut row = vec![id(grain.grain.0)];
-        row.extend(numbers([grain.area, grain.perimeter]));
-        row.extend(numbers(grain.centroid.to_array()));
-        row.extend(numbers([grain.equivalent_diameter, grain.circularity, grain.turning]));
-        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
-        row.push(count(grain.side_count));
-        row.extend(numbers([x.x, y.y, x.y]));
-        row.push(Value::Flag(grain.is_at_exterior));
-        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
-        row.push(id(seed_ids[grain.grain.index()]));
-        row
-    };
-    let columns = vec![
-        "id",
-        "area",
-        "perimeter",
-        "centroid_x",
-        "centroid_y",
-        "equivalent_diameter",
-        "circularity",
-        "turning",
-        "growth_rate",
-        "curvature_rate",
-        "sides",
-        "moment_xx",
-        "moment_yy",
-        "moment_xy",
-        "at_exterior",
-        "neighbors",
-        "SeedId",
-    ];
-    Table { columns, rows: grains.iter().map(row).collect() }
+    Table::new(
+        grains,
+        &[
+            ("id", &|grain| id(grain.grain.0)),
+            ("area", &|grain| Number(grain.area)),
+            ("perimeter", &|grain| Number(grain.perimeter)),
+            ("centroid_x", &|grain| Number(grain.centroid.x)),
+            ("centroid_y", &|grain| Number(grain.centroid.y)),
+            ("equivalent_diameter", &|grain| Number(grain.equivalent_diameter)),
+            ("circularity", &|grain| Number(grain.circularity)),
+            ("turning", &|grain| Number(grain.turning)),
+            ("growth_rate", &|grain| Number(grain.growth_rate.unwrap_or(f64::NAN))),
+            ("curvature_rate", &|grain| Number(grain.curvature_rate)),
+            ("sides", &|grain| count(grain.side_count)),
+            ("moment_xx", &|grain| Number(grain.second_moment.x_axis.x)),
+            ("moment_yy", &|grain| Number(grain.second_moment.y_axis.y)),
+            ("moment_xy", &|grain| Number(grain.second_moment.x_axis.y)),
+            ("at_exterior", &|grain| Value::Flag(grain.is_at_exterior)),
+            ("neighbors", &|grain| ids(grain.neighbors.iter().map(|neighbor| neighbor.0))),
+            (SEED_ID, &|grain| id(seed_ids[grain.grain.index()])),
+        ],
+    )
 }
 
 fn boundary_table(boundaries: &[PlaneBoundaryMeasures]) -> Table {
-    let row = |boundary: &PlaneBoundaryMeasures| {
-        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
-        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
-        row.push(Value::Number(boundary.length));
-        row.extend(numbers(boundary.centroid.to_array()));
-        row.extend(numbers(boundary.mean_normal.to_array()));
-        row.push(Value::Number(boundary.mean_curvature));
-        row
-    };
-    let columns = vec![
-        "id",
-        "side_0",
-        "side_1",
-        "length",
-        "centroid_x",
-        "centroid_y",
-        "normal_x",
-        "normal_y",
-        "mean_curvature",
-    ];
-    Table { columns, rows: boundaries.iter().map(row).collect() }
+    Table::new(
+        boundaries,
+        &[
+            ("id", &|boundary| id(boundary.boundary.0)),
+            ("side_0", &|boundary| side(boundary.sides[0])),
+            ("side_1", &|boundary| side(boundary.sides[1])),
+            ("length", &|boundary| Number(boundary.length)),
+            ("centroid_x", &|boundary| Number(boundary.centroid.x)),
+            ("centroid_y", &|boundary| Number(boundary.centroid.y)),
+            ("normal_x", &|boundary| Number(boundary.mean_normal.x)),
+            ("normal_y", &|boundary| Number(boundary.mean_normal.y)),
+            ("mean_curvature", &|boundary| Number(boundary.mean_curvature)),
+        ],
+    )
 }
 
 fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
-    let row = |at: &TriplePointMeasures| {
-        let mut row = vec![Value::Integer(i64::from(at.point))];
-        row.extend(numbers(at.position.to_array()));
-        row.push(grain_count(&at.sides));
-        row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
-        row.push(Value::Number(at.residual.unwrap_or(f64::NAN)));
-        row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
-        row
-    };
-    let columns = vec!["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
-    Table { columns, rows: points.iter().map(row).collect() }
+    Table::new(
+        points,
+        &[
+            ("point", &|at| id(at.point)),
+            ("x", &|at| Number(at.position.x)),
+            ("y", &|at| Number(at.position.y)),
+            ("grains", &|at| grain_count(&at.sides)),
+            ("sides", &|at| sides(&at.sides)),
+            ("angles", &|at| Value::Numbers(at.angles.clone())),
+            ("residual", &|at| Number(at.residual.unwrap_or(f64::NAN))),
+            ("boundaries", &|at| ids(at.boundaries.iter().map(|boundary| boundary.0))),
+        ],
+    )
 }

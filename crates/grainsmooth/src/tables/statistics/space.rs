@@ -6,10 +6,10 @@ use polycrystal::{
     BoundaryMeasures, GrainMeasures, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures,
 };
 
-use super::{
-    Tables, add_angles, count, distributions, grain_count, id, ids, is_inside, numbers, side, sides,
-};
-use crate::tables::table::{Table, Value};
+use super::{Tables, add_angles, count, distributions, grain_count, id, ids, is_inside, side, sides};
+use crate::names::SEED_ID;
+use crate::tables::table::Table;
+use crate::tables::table::Value::{self, Number};
 
 pub(super) fn tables(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
     let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
@@ -44,133 +44,94 @@ pub(super) fn tables(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &
 }
 
 fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
-    let row = |grain: &GrainMeasures| {
-        let [x, y, z] = [grain.inertia.x_axis, grain.inertia.y_axis, grain.inertia.z_axis];
-        let mut row = vec![id(grain.grain.0)];
-        row.extend(numbers([grain.volume, grain.area]));
-        row.extend(numbers(grain.centroid.to_array()));
-        row.extend(numbers([grain.equivalent_diameter, grain.sphericity]));
-        row.extend(numbers([grain.mean_width, grain.integral_mean_curvature, grain.triple_line_length]));
-        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
-        row.extend([grain.face_count, grain.edge_count, grain.vertex_count].map(count));
-        row.push(Value::Number(grain.edges_per_face));
-        row.extend(numbers([x.x, y.y, z.z, x.y, x.z, y.z]));
-        row.push(Value::Flag(grain.is_at_exterior));
-        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
-        row.push(id(seed_ids[grain.grain.index()]));
-        row
-    };
-    let columns = vec![
-        "id",
-        "volume",
-        "area",
-        "centroid_x",
-        "centroid_y",
-        "centroid_z",
-        "equivalent_diameter",
-        "sphericity",
-        "mean_width",
-        "integral_mean_curvature",
-        "triple_line_length",
-        "growth_rate",
-        "curvature_rate",
-        "faces",
-        "edges",
-        "vertices",
-        "edges_per_face",
-        "inertia_xx",
-        "inertia_yy",
-        "inertia_zz",
-        "inertia_xy",
-        "inertia_xz",
-        "inertia_yz",
-        "at_exterior",
-        "neighbors",
-        "SeedId",
-    ];
-    Table { columns, rows: grains.iter().map(row).collect() }
+    Table::new(
+        grains,
+        &[
+            ("id", &|grain| id(grain.grain.0)),
+            ("volume", &|grain| Number(grain.volume)),
+            ("area", &|grain| Number(grain.area)),
+            ("centroid_x", &|grain| Number(grain.centroid.x)),
+            ("centroid_y", &|grain| Number(grain.centroid.y)),
+            ("centroid_z", &|grain| Number(grain.centroid.z)),
+            ("equivalent_diameter", &|grain| Number(grain.equivalent_diameter)),
+            ("sphericity", &|grain| Number(grain.sphericity)),
+            ("mean_width", &|grain| Number(grain.mean_width)),
+            ("integral_mean_curvature", &|grain| Number(grain.integral_mean_curvature)),
+            ("triple_line_length", &|grain| Number(grain.triple_line_length)),
+            ("growth_rate", &|grain| Number(grain.growth_rate.unwrap_or(f64::NAN))),
+            ("curvature_rate", &|grain| Number(grain.curvature_rate)),
+            ("faces", &|grain| count(grain.face_count)),
+            ("edges", &|grain| count(grain.edge_count)),
+            ("vertices", &|grain| count(grain.vertex_count)),
+            ("edges_per_face", &|grain| Number(grain.edges_per_face)),
+            ("inertia_xx", &|grain| Number(grain.inertia.x_axis.x)),
+            ("inertia_yy", &|grain| Number(grain.inertia.y_axis.y)),
+            ("inertia_zz", &|grain| Number(grain.inertia.z_axis.z)),
+            ("inertia_xy", &|grain| Number(grain.inertia.x_axis.y)),
+            ("inertia_xz", &|grain| Number(grain.inertia.x_axis.z)),
+            ("inertia_yz", &|grain| Number(grain.inertia.y_axis.z)),
+            ("at_exterior", &|grain| Value::Flag(grain.is_at_exterior)),
+            ("neighbors", &|grain| ids(grain.neighbors.iter().map(|neighbor| neighbor.0))),
+            (SEED_ID, &|grain| id(seed_ids[grain.grain.index()])),
+        ],
+    )
 }
 
 fn boundary_table(boundaries: &[BoundaryMeasures]) -> Table {
-    let row = |boundary: &BoundaryMeasures| {
-        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
-        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
-        row.push(Value::Number(boundary.area));
-        row.extend(numbers(boundary.centroid.to_array()));
-        row.extend(numbers(boundary.mean_normal.to_array()));
-        row.extend([count(boundary.edge_count), Value::Number(boundary.perimeter)]);
-        row.push(Value::Number(boundary.mean_curvature));
-        row
-    };
-    let columns = vec![
-        "id",
-        "side_0",
-        "side_1",
-        "area",
-        "centroid_x",
-        "centroid_y",
-        "centroid_z",
-        "normal_x",
-        "normal_y",
-        "normal_z",
-        "edges",
-        "perimeter",
-        "mean_curvature",
-    ];
-    Table { columns, rows: boundaries.iter().map(row).collect() }
+    Table::new(
+        boundaries,
+        &[
+            ("id", &|boundary| id(boundary.boundary.0)),
+            ("side_0", &|boundary| side(boundary.sides[0])),
+            ("side_1", &|boundary| side(boundary.sides[1])),
+            ("area", &|boundary| Number(boundary.area)),
+            ("centroid_x", &|boundary| Number(boundary.centroid.x)),
+            ("centroid_y", &|boundary| Number(boundary.centroid.y)),
+            ("centroid_z", &|boundary| Number(boundary.centroid.z)),
+            ("normal_x", &|boundary| Number(boundary.mean_normal.x)),
+            ("normal_y", &|boundary| Number(boundary.mean_normal.y)),
+            ("normal_z", &|boundary| Number(boundary.mean_normal.z)),
+            ("edges", &|boundary| count(boundary.edge_count)),
+            ("perimeter", &|boundary| Number(boundary.perimeter)),
+            ("mean_curvature", &|boundary| Number(boundary.mean_curvature)),
+        ],
+    )
 }
 
 fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
-    let row = |(id, line): (usize, &TripleLineMeasures)| {
-        vec![
-            count(id),
-            Value::Number(line.length),
-            Value::Number(line.smallest_angle),
-            Value::Number(line.largest_angle),
-            Value::Number(line.residual.unwrap_or(f64::NAN)),
-            Value::Flag(line.is_closed),
-            grain_count(&line.sides),
-            sides(&line.sides),
-            Value::Numbers(line.mean_angles.clone()),
-            ids(line.boundaries.iter().map(|boundary| boundary.0)),
-        ]
-    };
-    let columns = vec![
-        "id",
-        "length",
-        "smallest_angle",
-        "largest_angle",
-        "residual",
-        "closed",
-        "grains",
-        "sides",
-        "mean_angles",
-        "boundaries",
-    ];
-    Table { columns, rows: lines.iter().enumerate().map(row).collect() }
+    let lines: Vec<(usize, &TripleLineMeasures)> = lines.iter().enumerate().collect();
+    Table::new(
+        &lines,
+        &[
+            ("id", &|(id, _)| count(*id)),
+            ("length", &|(_, line)| Number(line.length)),
+            ("smallest_angle", &|(_, line)| Number(line.smallest_angle)),
+            ("largest_angle", &|(_, line)| Number(line.largest_angle)),
+            ("residual", &|(_, line)| Number(line.residual.unwrap_or(f64::NAN))),
+            ("closed", &|(_, line)| Value::Flag(line.is_closed)),
+            ("grains", &|(_, line)| grain_count(&line.sides)),
+            ("sides", &|(_, line)| sides(&line.sides)),
+            ("mean_angles", &|(_, line)| Value::Numbers(line.mean_angles.clone())),
+            ("boundaries", &|(_, line)| ids(line.boundaries.iter().map(|boundary| boundary.0))),
+        ],
+    )
 }
 
 /// `grain_counts` are those of all points.
 fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8]) -> Table {
-    let row = |at: &QuadruplePointMeasures| {
-        let mut row = vec![Value::Integer(i64::from(at.point))];
-        row.extend(numbers(at.position.to_array()));
-        row.extend([count(at.line_count), count(grain_counts[at.point as usize].into())]);
-        row.extend(numbers([at.mean_angle, at.smallest_angle, at.largest_angle]));
-        row.push(sides(&at.sides));
-        row
-    };
-    let columns = vec![
-        "point",
-        "x",
-        "y",
-        "z",
-        "lines",
-        "grains",
-        "mean_angle",
-        "smallest_angle",
-        "largest_angle",
-        "sides",
-    ];
-    Table { columns, rows: points.iter().map(row).collect() }
+    Table::new(
+        points,
+        &[
+            ("point", &|at| id(at.point)),
+            ("x", &|at| Number(at.position.x)),
+            ("y", &|at| Number(at.position.y)),
+            ("z", &|at| Number(at.position.z)),
+            ("lines", &|at| count(at.line_count)),
+            ("grains", &|at| count(grain_counts[at.point as usize].into())),
+            ("mean_angle", &|at| Number(at.mean_angle)),
+            ("smallest_angle", &|at| Number(at.smallest_angle)),
+            ("largest_angle", &|at| Number(at.largest_angle)),
+            ("sides", &|at| sides(&at.sides)),
+        ],
+    )
 }
