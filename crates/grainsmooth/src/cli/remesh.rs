@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use crate::ElementOptions;
 use clap::Args;
 
-use super::files::OutputArguments;
-use super::pictures::PictureArguments;
-use super::run::SharedArguments;
+use super::result::ResultArguments;
 
 /// Remesh a network from a file with triangles of one size, for finite elements
 ///
@@ -24,13 +22,7 @@ pub struct RemeshArguments {
     pub elements: ElementOptions,
 
     #[command(flatten)]
-    pub outputs: OutputArguments,
-
-    #[command(flatten)]
-    pub pictures: PictureArguments,
-
-    #[command(flatten)]
-    pub shared: SharedArguments,
+    pub result: ResultArguments,
 }
 
 const EXAMPLES: &str = "\

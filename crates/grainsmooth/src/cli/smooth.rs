@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use crate::{MapNetworkOptions, MapOptions};
 use clap::Args;
 
-use super::files::OutputArguments;
-use super::pictures::PictureArguments;
-use super::run::SharedArguments;
+use super::result::ResultArguments;
 
 /// Make a smooth network from a measured map: labels of grains on a grid, or orientations (EBSD)
 ///
@@ -28,13 +26,7 @@ pub struct SmoothArguments {
     pub network: MapNetworkOptions,
 
     #[command(flatten)]
-    pub outputs: OutputArguments,
-
-    #[command(flatten)]
-    pub pictures: PictureArguments,
-
-    #[command(flatten)]
-    pub shared: SharedArguments,
+    pub result: ResultArguments,
 }
 
 const EXAMPLES: &str = "\

@@ -7,14 +7,13 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use grainsmooth::{
-    CellTable, CellsSummary, Config, ElementOptions, Error, Estimate, ListedSummary, Output, Series,
-    SeriesOutput, Stage, StagedFiles, Summary, Synthesis, TableFormat, check_expected_size, list_cells,
-    smooth_watched, tessellate, write_together,
+    CellTable, CellsSummary, Config, ElementOptions, Error, Estimate, ListedSummary, Output, Progress,
+    Series, SeriesOutput, Stage, StagedFiles, Summary, Synthesis, TableFormat, check_expected_size,
+    list_cells, smooth_watched, tessellate, write_together,
 };
 
-use super::result_files::{ResultFiles, check_all_differ, thread_pool};
+use super::result_files::{ResultFiles, check_all_differ, show_run, thread_pool, with_paths};
 use crate::progress::ProgressLine;
-use crate::say;
 use grainsmooth::cli::Arguments;
 
 /// Runs what the command line asks for.
@@ -22,11 +21,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let config = arguments.config()?;
     // An output that cannot be written is found before hours of work, not after.
     let files = Files::check(arguments, &config)?;
-    let pool = thread_pool(&arguments.run.shared)?;
-    let is_quiet = arguments.run.shared.quiet;
-    let line = ProgressLine::new(is_quiet, files.stages(&config));
+    let shared = &arguments.run.shared;
     if arguments.run.dry_run {
-        let estimate = pool.install(|| estimate(&config, &files, &line));
+        let line = ProgressLine::new(shared.quiet, files.stages(&config));
+        let estimate = thread_pool(shared)?.install(|| estimate(&config, &files, &line));
         line.clear();
         let estimate = estimate?;
         writeln!(io::stdout(), "{estimate}")?;
@@ -35,19 +33,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     files.check_space(&config)?;
-    let result = pool.install(|| compute(&config, &files, &line));
-    line.clear();
-    if let Err(Error::Failed(failure)) = &result
-        && !is_quiet
-    {
-        failure.attempts.iter().for_each(|attempt| say(&format!("given up    {attempt}")));
-    }
-    let summary = result?;
-    if !is_quiet {
-        let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
-        say(&format!("{summary}\nwritten     {}", names.join(", ")));
-    }
-    Ok(ExitCode::SUCCESS)
+    show_run(shared, files.stages(&config), |progress| compute(&config, &files, progress))
 }
 
 /// What is written, all found writable.
@@ -85,7 +71,7 @@ impl Files {
             if config.elements != ElementOptions::default() {
                 stages.push(Stage::Remeshing);
             }
-            if self.result.need_tetrahedra(&config.to_write()) {
+            if self.result.need_tetrahedra() {
                 stages.push(Stage::Filling);
             }
         }
@@ -125,20 +111,20 @@ fn estimate(config: &Config, files: &Files, line: &ProgressLine) -> Result<Estim
 }
 
 /// Computes and writes what is asked for, and returns the summary.
-fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String, Error> {
-    let progress = |stage, done, count| line.show(stage, done, count);
+fn compute(config: &Config, files: &Files, progress: Progress<'_>) -> Result<String, Error> {
+    let paths = files.paths();
     if files.is_cells_only {
         if config.lists_cells() {
-            let cells = list_cells(config, &progress)?;
+            let cells = list_cells(config, progress)?;
             write_together(|staged| files.stage_tables(|| CellTable::of_list(config, &cells), staged))?;
-            return Ok(ListedSummary(config, &cells).to_string().trim_end().to_owned());
+            return Ok(with_paths(&ListedSummary(config, &cells).to_string().trim_end(), &paths));
         }
-        let cells = tessellate(config, &progress)?.stretched(config);
+        let cells = tessellate(config, progress)?.stretched(config);
         write_together(|staged| files.stage_tables(|| CellTable::new(config, &cells), staged))?;
-        return Ok(CellsSummary(config, &cells).to_string().trim_end().to_owned());
+        return Ok(with_paths(&CellsSummary(config, &cells).to_string().trim_end(), &paths));
     }
     check_expected_size(config)?;
-    let tessellated = tessellate(config, &progress)?;
+    let tessellated = tessellate(config, progress)?;
     let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
     let mut added = Ok(());
     let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
@@ -147,12 +133,12 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
         }
     })?;
     added?;
-    polycrystal = polycrystal.completed(&progress)?;
-    if files.result.need_tetrahedra(&config.to_write()) {
-        line.show(Stage::Filling, 0, 1);
+    polycrystal = polycrystal.completed(progress)?;
+    if files.result.need_tetrahedra() {
+        progress(Stage::Filling, 0, 1);
         polycrystal = polycrystal.filled()?;
     }
-    line.show(Stage::Writing, 0, 1);
+    progress(Stage::Writing, 0, 1);
     let start = Instant::now();
     write_together(|staged| {
         if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
@@ -162,7 +148,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
         if let Some((output, series)) = &series {
             series.stage(&mut polycrystal, output, staged)?;
         }
-        files.result.finish(&mut polycrystal, start, &files.paths(), staged)
+        files.result.finish(&mut polycrystal, start, &paths, staged)
     })?;
-    Ok(Summary(&polycrystal).to_string())
+    Ok(with_paths(&Summary(&polycrystal), &paths))
 }

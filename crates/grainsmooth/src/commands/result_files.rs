@@ -1,21 +1,30 @@
 //! The files that a finished network goes to.
 
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    Config, DeckOutput, Error, FileOptions, Html, Output, OutputDirectory, OutputFormat, Picture, Png,
-    Polycrystal, Progress, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord, ToWrite,
-    VolumeMeshOptions, check_gmsh, write_together,
+    Config, DeckOutput, Error, FileOptions, Html, LabelledFile, Output, OutputDirectory, OutputFormat,
+    Picture, Png, Polycrystal, Progress, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
+    ToWrite, VolumeMeshOptions, check_gmsh, write_together,
 };
+use voronoi::Dimension;
 
-use grainsmooth::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
+use super::mesh::command_line;
+use crate::progress::ProgressLine;
+use crate::say;
+use grainsmooth::cli::{
+    Arguments, OutputArguments, PictureArguments, ResultArguments, SharedArguments, usage,
+};
 
 /// What is written, all found writable.
 pub struct ResultFiles {
+    to_write: ToWrite,
     /// The network and its voxels, by file.
     pub outputs: Vec<Output>,
     printed: Option<Printed>,
@@ -32,6 +41,14 @@ pub struct ResultFiles {
 enum Printed {
     Network(OutputFormat),
     Summary,
+}
+
+/// What a file of input holds.
+pub struct Given {
+    pub dimension: Dimension,
+    pub has_map: bool,
+    pub has_orientations: bool,
+    pub has_phases: bool,
 }
 
 impl ResultFiles {
@@ -71,6 +88,7 @@ impl ResultFiles {
         };
         let summary = shared.json_summary.as_deref().filter(|_| !prints_summary);
         let all = Self {
+            to_write: *to_write,
             outputs: files,
             printed,
             grains,
@@ -80,24 +98,66 @@ impl ResultFiles {
             statistics: outputs.statistics(to_write.dimension)?,
             deck: None,
         };
-        all.check_tetrahedra(to_write)?;
-        let deck = all.deck(to_write)?;
+        all.check_tetrahedra()?;
+        let deck = all.deck()?;
         let all = Self { deck, ..all };
-        if all.need_tetrahedra(to_write) {
+        if all.need_tetrahedra() {
             check_gmsh()?;
         }
         Ok(all)
     }
 
+    /// The same for what a file holds, and how files are written.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where it does not hold what is asked for.
+    pub fn of_given(
+        arguments: &ResultArguments,
+        path: &Path,
+        given: Given,
+    ) -> Result<(Self, FileOptions), Error> {
+        let ResultArguments { outputs, pictures, shared } = arguments;
+        let Given { dimension, has_map, has_orientations, has_phases } = given;
+        pictures.check_known(path, has_orientations, has_phases)?;
+        let file = outputs.options(dimension)?;
+        let (has_voxels, volume) = (file.voxels.is_some(), file.volume);
+        let to_write = ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells: false, volume };
+        let files = Self::check(outputs, pictures, shared, &to_write, true)?;
+        check_all_differ(files.targets())?;
+        Ok((files, file))
+    }
+
+    /// The same for the network of a file, and this network.
+    ///
+    /// # Errors
+    /// Also [`Error::NetworkOfMap`].
+    pub fn of_network(
+        arguments: &ResultArguments,
+        path: &Path,
+        network: &LabelledFile,
+    ) -> Result<(Self, Polycrystal), Error> {
+        let given = Given {
+            dimension: network.surface().elements.dimension(),
+            has_map: false,
+            has_orientations: network.orientations.is_some(),
+            has_phases: network.phases.is_some(),
+        };
+        let (files, file) = Self::of_given(arguments, path, given)?;
+        let domain = Arguments::domain_of(network);
+        let mut polycrystal = Polycrystal::of_file(path, network, domain, command_line())?;
+        *polycrystal.file_mut() = file;
+        Ok((files, polycrystal))
+    }
+
     /// Checks that what is asked of tetrahedra goes into some file.
-    fn check_tetrahedra(&self, to_write: &ToWrite) -> Result<(), Error> {
-        let volume = &to_write.volume;
-        if volume.volume_mesh && !self.need_tetrahedra(to_write) {
+    fn check_tetrahedra(&self) -> Result<(), Error> {
+        let volume = &self.to_write.volume;
+        if volume.volume_mesh && !self.need_tetrahedra() {
             return Err(usage(
                 "--volume-mesh writes tetrahedra, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
             ));
         }
-        if volume.order.is_some() && !self.need_tetrahedra(to_write) {
+        if volume.order.is_some() && !self.need_tetrahedra() {
             return Err(usage(
                 "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp",
             ));
@@ -108,7 +168,7 @@ impl ResultFiles {
             ("cohesive", volume.cohesive),
             ("solver-deck", volume.solver_deck.is_some()),
         ] {
-            if is_asked && (!has_inp || to_write.has_voxels) {
+            if is_asked && (!has_inp || self.to_write.has_voxels) {
                 return Err(usage(&format!(
                     "--{name} needs tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out"
                 )));
@@ -118,8 +178,8 @@ impl ResultFiles {
     }
 
     /// The job for a solver, found writable; nothing where none is asked for.
-    fn deck(&self, to_write: &ToWrite) -> Result<Option<DeckOutput>, Error> {
-        let Some(deck) = to_write.volume.solver_deck else { return Ok(None) };
+    fn deck(&self) -> Result<Option<DeckOutput>, Error> {
+        let Some(deck) = self.to_write.volume.solver_deck else { return Ok(None) };
         let Some(elements) = self.outputs.iter().find(|output| output.format() == OutputFormat::INP) else {
             return Err(usage("--solver-deck needs a file of elements; give -o grains.inp"));
         };
@@ -127,8 +187,8 @@ impl ResultFiles {
     }
 
     /// Whether some format holds tetrahedra.
-    pub fn need_tetrahedra(&self, to_write: &ToWrite) -> bool {
-        self.formats().into_iter().any(|format| format.needs_tetrahedra(to_write))
+    pub fn need_tetrahedra(&self) -> bool {
+        self.formats().into_iter().any(|format| format.needs_tetrahedra(&self.to_write))
     }
 
     /// All files and directories in full.
@@ -170,11 +230,10 @@ impl ResultFiles {
     pub fn fill_and_write(
         &self,
         mut polycrystal: Polycrystal,
-        to_write: &ToWrite,
         progress: Progress<'_>,
     ) -> Result<String, Error> {
-        if self.need_tetrahedra(to_write) {
-            check_solver_options(&polycrystal, &to_write.volume)?;
+        if self.need_tetrahedra() {
+            check_solver_options(&polycrystal, &self.to_write.volume)?;
             progress(Stage::Filling, 0, 1);
             polycrystal = polycrystal.filled()?;
         }
@@ -184,8 +243,7 @@ impl ResultFiles {
             self.stage(&polycrystal, staged)?;
             self.finish(&mut polycrystal, start, &self.paths(), staged)
         })?;
-        let names: Vec<String> = self.paths().iter().map(|path| path.display().to_string()).collect();
-        Ok(format!("{}\nwritten     {}", Summary(&polycrystal), names.join(", ")))
+        Ok(with_paths(&Summary(&polycrystal), &self.paths()))
     }
 
     /// Completes all files but the report and the summary, which tell how long that takes.
@@ -242,6 +300,12 @@ impl ResultFiles {
     }
 }
 
+/// A summary and the files that were written.
+pub fn with_paths(summary: &dyn Display, paths: &[PathBuf]) -> String {
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    format!("{summary}\nwritten     {}", names.join(", "))
+}
+
 /// Refuses two files of one path.
 ///
 /// # Errors
@@ -278,6 +342,28 @@ fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -
     let file = FileOptions { volume: *volume, ..FileOptions::default() };
     let options = Config { periodic: repeats, file, ..Config::default() };
     options.check().map_err(|error| usage(&error.to_string()))
+}
+
+/// Runs a command on its threads, with its progress through some stages shown, and says what it returns.
+pub fn show_run(
+    shared: &SharedArguments,
+    stages: Vec<Stage>,
+    make: impl FnOnce(Progress<'_>) -> Result<String, Error> + Send,
+) -> anyhow::Result<ExitCode> {
+    let pool = thread_pool(shared)?;
+    let line = ProgressLine::new(shared.quiet, stages);
+    let summary = pool.install(|| make(&|stage, done, count| line.show(stage, done, count)));
+    line.clear();
+    if let Err(Error::Failed(failure)) = &summary
+        && !shared.quiet
+    {
+        failure.attempts.iter().for_each(|attempt| say(&format!("given up    {attempt}")));
+    }
+    let summary = summary?;
+    if !shared.quiet {
+        say(&summary);
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Threads to compute with.

@@ -3,118 +3,57 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use grainsmooth::{
-    Error, LabelledFile, MapRun, MeasuredMap, Polycrystal, Progress, Stage, ToWrite, read_map, smooth_map,
-};
-use polycrystal::Relaxation;
+use grainsmooth::{Error, LabelledFile, MapRun, Progress, Stage, read_map, smooth_map};
 use voronoi::Dimension;
 
 use super::mesh::command_line;
-use super::result_files::{ResultFiles, check_all_differ, thread_pool};
-use crate::progress::ProgressLine;
-use crate::say;
-use grainsmooth::cli::{Arguments, SmoothArguments, usage};
+use super::result_files::{Given, ResultFiles, show_run};
+use grainsmooth::cli::{SmoothArguments, usage};
 
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
-    let pool = thread_pool(&arguments.shared)?;
     let mut stages = vec![Stage::Map, Stage::Network, Stage::Writing];
     if arguments.network.relaxation().is_some() {
         stages.splice(2..2, [Stage::Relaxation, Stage::Validation]);
     }
-    let line = ProgressLine::new(arguments.shared.quiet, stages);
-    let summary = pool.install(|| smooth(arguments, &line));
-    line.clear();
-    let summary = summary?;
-    if !arguments.shared.quiet {
-        say(&summary);
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// What is given.
-enum Given {
-    Map(Box<MeasuredMap>),
-    /// To be relaxed.
-    Network(Box<LabelledFile>, Relaxation),
-}
-
-impl Given {
-    fn read(arguments: &SmoothArguments) -> Result<Self, Error> {
-        let SmoothArguments { map: path, options, network, .. } = arguments;
-        if !LabelledFile::is_known(path) {
-            return Ok(Self::Map(Box::new(read_map(path, options)?)));
-        }
-        let of_maps = options.first_given().or(network.first_of_maps());
-        if let Some(option) = of_maps {
-            return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
-        }
-        let Some(relaxation) = network.relaxation() else {
-            return Err(usage(&format!(
-                "{} is a network already; give --relax, such as --relax equilibrium",
-                path.display()
-            )));
-        };
-        Ok(Self::Network(Box::new(LabelledFile::read(path)?), relaxation))
-    }
-
-    fn dimension(&self) -> Dimension {
-        match self {
-            Self::Map(measured) if measured.map.is_plane() => Dimension::Two,
-            Self::Map(_) => Dimension::Three,
-            Self::Network(file, _) => file.surface().elements.dimension(),
-        }
-    }
-
-    fn has_orientations(&self) -> bool {
-        match self {
-            Self::Map(measured) => measured.crystals.is_some(),
-            Self::Network(file, _) => file.orientations.is_some(),
-        }
-    }
-
-    fn has_phases(&self) -> bool {
-        match self {
-            Self::Map(measured) => measured.crystals.is_some(),
-            Self::Network(file, _) => file.phases.is_some(),
-        }
-    }
+    show_run(&arguments.result.shared, stages, |progress| smooth(arguments, progress))
 }
 
 /// Returns the summary.
-fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Error> {
-    let SmoothArguments { map: path, network, outputs, pictures, shared, .. } = arguments;
+fn smooth(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String, Error> {
+    let SmoothArguments { map: path, options, network, result } = arguments;
     let start = Instant::now();
-    line.show(Stage::Map, 0, 1);
-    let given = Given::read(arguments)?;
+    progress(Stage::Map, 0, 1);
+    if LabelledFile::is_known(path) {
+        return relax(arguments, progress);
+    }
+    let measured = read_map(path, options)?;
     let read_in = start.elapsed();
-    let has_orientations = given.has_orientations();
-    pictures.check_known(path, has_orientations, given.has_phases())?;
-    let dimension = given.dimension();
-    let file = outputs.options(dimension)?;
-    let to_write = ToWrite {
-        dimension,
-        has_voxels: file.voxels.is_some(),
-        has_map: matches!(given, Given::Map(_)),
-        has_orientations,
-        has_cells: false,
-        volume: file.volume,
+    let given = Given {
+        dimension: if measured.map.is_plane() { Dimension::Two } else { Dimension::Three },
+        has_map: true,
+        has_orientations: measured.crystals.is_some(),
+        has_phases: measured.crystals.is_some(),
     };
-    let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
-    check_all_differ(files.targets())?;
-    let progress: Progress<'_> = &|stage, done, count| line.show(stage, done, count);
-    let polycrystal = match given {
-        Given::Map(measured) => {
-            let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
-            smooth_map(path, &measured, run, progress)?
-        }
-        Given::Network(given, relaxation) => {
-            progress(Stage::Network, 0, 1);
-            let mut polycrystal =
-                Polycrystal::of_file(path, &given, Arguments::domain_of(&given), command_line())?;
-            *polycrystal.file_mut() = file;
-            polycrystal.relaxed(path, relaxation, progress)?
-        }
+    let (files, file) = ResultFiles::of_given(result, path, given)?;
+    let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
+    files.fill_and_write(smooth_map(path, &measured, run, progress)?, progress)
+}
+
+/// Relaxes a network.
+fn relax(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String, Error> {
+    let SmoothArguments { map: path, options, network, result } = arguments;
+    if let Some(option) = options.first_given().or(network.first_of_maps()) {
+        return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
+    }
+    let Some(relaxation) = network.relaxation() else {
+        return Err(usage(&format!(
+            "{} is a network already; give --relax, such as --relax equilibrium",
+            path.display()
+        )));
     };
-    files.fill_and_write(polycrystal, &to_write, progress)
+    let given = LabelledFile::read(path)?;
+    progress(Stage::Network, 0, 1);
+    let (files, polycrystal) = ResultFiles::of_network(result, path, &given)?;
+    files.fill_and_write(polycrystal.relaxed(path, relaxation, progress)?, progress)
 }
