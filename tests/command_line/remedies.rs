@@ -77,14 +77,14 @@ const REMEDIES: &[Remedy] = &[
     ),
     ("NoTexture", &[], "--seeds 2 -o a.ori", &[], "--seeds 2 -o a.ori --texture random"),
     (
-        "BadTextureFile, empty",
+        "BadLine, no orientation",
         &[("t.csv", "# nothing\n")],
         "--seeds 2 --texture t.csv",
         &[("t.csv", "1,2,3\n")],
         "--seeds 2 --texture t.csv",
     ),
     (
-        "BadSizeFile, empty",
+        "BadLine, no diameters",
         &[("d.csv", "diameter\n")],
         "--seeds 2 --diameters d.csv",
         &[("d.csv", "diameter\n1\n")],
@@ -143,14 +143,8 @@ const REMEDIES: &[Remedy] = &[
         &[],
         "--seeds 2 -o a.vtp --grains-dir e",
     ),
-    ("SeedFileUnreadable, DomainFileUnreadable", &[], "--seeds-file s.csv", &[SEEDS], "--seeds-file s.csv"),
-    (
-        "SeedFileUnreadable, DomainFileUnreadable",
-        &[],
-        "--seeds 2 --half-spaces h.csv",
-        &[PYRAMID],
-        "--seeds 2 --half-spaces h.csv",
-    ),
+    ("Unreadable", &[], "--seeds-file s.csv", &[SEEDS], "--seeds-file s.csv"),
+    ("Unreadable", &[], "--seeds 2 --half-spaces h.csv", &[PYRAMID], "--seeds 2 --half-spaces h.csv"),
     (
         "NoLatticeSeeds",
         &[OCTAHEDRON],

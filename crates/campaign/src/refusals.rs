@@ -22,7 +22,7 @@ pub const REFUSALS: &[Kind] = &[
     ("OutputDirectoryTaken", &["is not an empty directory"]),
     ("OutputNotWritable", &["cannot be written", "make it writable or choose another path"]),
     // Files of seeds and domains.
-    ("SeedFileUnreadable, DomainFileUnreadable", &["cannot be read", "give the path of a readable"]),
+    ("Unreadable", &["cannot be read", "give the path of a readable"]),
     ("NoSeedsInFile", &["holds no seeds"]),
     ("NoLatticeSeeds", &["no point of the lattice lies in the domain", "more unit cells"]),
     ("SeedProblem::NotUtf8", &["not UTF-8 text"]),
@@ -51,9 +51,9 @@ pub const REFUSALS: &[Kind] = &[
         &["the phases with place= are too crowded", "give them smaller shares or smaller grains"],
     ),
     ("PhasesError::FewGrains", &["grains cannot be of", "seeds or more"]),
-    ("BadTextureFile, empty", &["holds no orientation"]),
+    ("BadLine, no orientation", &["holds no orientation"]),
     // Sizes that are asked for.
-    ("BadSizeFile, empty", &["holds no diameters"]),
+    ("BadLine, no diameters", &["holds no diameters"]),
     ("GrainTooLarge", &["does not fit", "use a larger domain"]),
     ("VolumeCount", &["volumes for", "seeds; give one for each"]),
     // Seeds and domains.

@@ -112,11 +112,13 @@ pub enum Error {
         /// Why.
         cause: io::Error,
     },
-    /// A seed file cannot be opened or read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable file", path.display())]
-    SeedFileUnreadable {
+    /// A file of input cannot be opened or read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable {kind}", path.display())]
+    Unreadable {
         /// The path as given.
         path: PathBuf,
+        /// What it should be: a file, or a text file.
+        kind: &'static str,
         /// Why.
         cause: io::Error,
     },
@@ -183,14 +185,6 @@ pub enum Error {
         /// What the file is read for.
         dimension: Dimension,
     },
-    /// A file of half-spaces cannot be read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
-    DomainFileUnreadable {
-        /// The path as given.
-        path: PathBuf,
-        /// Why.
-        cause: io::Error,
-    },
     /// A seed of a file has no cell.
     #[error("{} {place}: {cause}", path.display())]
     SeedInFile {
@@ -217,24 +211,6 @@ pub enum Error {
     /// Words that are no texture.
     #[error(transparent)]
     Texture(#[from] texture::SpecError),
-    /// A file of orientations cannot be read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
-    TextureFileUnreadable {
-        /// The path as given.
-        path: PathBuf,
-        /// Why.
-        cause: io::Error,
-    },
-    /// A file of orientations holds something else.
-    #[error("{} line {line}: {problem}", path.display())]
-    BadTextureFile {
-        /// The path as given.
-        path: PathBuf,
-        /// Line of the file, counted from 1.
-        line: usize,
-        /// What is wrong, and what to do about it.
-        problem: String,
-    },
     /// A measured map has crystals of another symmetry than is asked for.
     #[error(
         "{}: its crystals are {of_file} and not {asked}; give {option}{of_file}", path.display()
@@ -261,17 +237,9 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
-    /// A file of sizes cannot be read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
-    SizeFileUnreadable {
-        /// The path as given.
-        path: PathBuf,
-        /// Why.
-        cause: io::Error,
-    },
-    /// A file of sizes holds something else.
+    /// A line of a file of sizes or orientations holds something else.
     #[error("{} line {line}: {problem}", path.display())]
-    BadSizeFile {
+    BadLine {
         /// The path as given.
         path: PathBuf,
         /// Line of the file, counted from 1.
@@ -405,14 +373,6 @@ pub enum Error {
         /// Why.
         cause: Box<NetworkError>,
     },
-    /// A collection of files (.pvd, .vtm) cannot be opened or read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable file", path.display())]
-    CollectionUnreadable {
-        /// The path as given.
-        path: PathBuf,
-        /// Why.
-        cause: io::Error,
-    },
     /// A collection of files (.pvd, .vtm) names none.
     #[error("{}: names no files; give a collection as ParaView writes it, or the files themselves", path.display())]
     EmptyCollection {
@@ -444,11 +404,7 @@ impl Error {
         match self {
             Self::OutputNotWritable { path, cause }
             | Self::WriteOutput { path, cause }
-            | Self::SeedFileUnreadable { path, cause }
-            | Self::DomainFileUnreadable { path, cause }
-            | Self::TextureFileUnreadable { path, cause }
-            | Self::SizeFileUnreadable { path, cause }
-            | Self::CollectionUnreadable { path, cause }
+            | Self::Unreadable { path, cause, .. }
             | Self::MeshFile { path, problem: MeshFileProblem::Unreadable(cause) }
             | Self::MapFile { path, problem: MapProblem::Unreadable(cause) } => Some((path, cause)),
             _ => None,

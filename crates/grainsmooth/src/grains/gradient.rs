@@ -27,7 +27,7 @@ impl Gradient {
     /// The gradient that a config asks for, if it does.
     ///
     /// # Errors
-    /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+    /// [`Error::Unreadable`]; [`Error::BadLine`].
     pub(crate) fn of_config(config: &Config) -> Result<Option<Self>, Error> {
         let Some(GradientSource { axis, path }) = &config.sizes.gradient else { return Ok(None) };
         let stretch = config.stretch()[*axis];

@@ -12,7 +12,7 @@ impl ShapeSource {
     /// The shapes of so many grains; `rotation` draws the direction of one.
     ///
     /// # Errors
-    /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`], also where there are not as many lines as grains.
+    /// [`Error::Unreadable`]; [`Error::BadLine`], also where there are not as many lines as grains.
     pub(crate) fn shapes(
         &self,
         dimension: Dimension,
@@ -29,7 +29,7 @@ impl ShapeSource {
                 let found = shapes.len();
                 let problem =
                     format!("holds {found} shapes for {count} grains; give one for each, or --seeds {found}");
-                return Err(Error::BadSizeFile { path: path.clone(), line: 1, problem });
+                return Err(Error::BadLine { path: path.clone(), line: 1, problem });
             }
         };
         let lengths = DVec3::new(spec.lengths[0], spec.lengths[1], *spec.lengths.get(2).unwrap_or(&1.0));

@@ -26,7 +26,7 @@ impl Config {
     /// What grains are to be like, where they have given volumes.
     ///
     /// # Errors
-    /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+    /// [`Error::Unreadable`]; [`Error::BadLine`].
     pub(crate) fn wanted_sizes(&self) -> Result<Wanted, Error> {
         self.wanted(self.sizes.source.as_ref())
     }

@@ -13,7 +13,7 @@ impl TextureOptions {
     /// The histogram of disorientations that is asked for, if one is.
     ///
     /// # Errors
-    /// [`Error::TextureFileUnreadable`]; [`Error::BadTextureFile`].
+    /// [`Error::Unreadable`]; [`Error::BadLine`].
     pub fn histogram(&self) -> Result<Option<AngleHistogram>, Error> {
         let read = |path: &PathBuf| read_disorientation_file(path, self.symmetry);
         self.misorientations.as_ref().map(read).transpose()
@@ -22,7 +22,7 @@ impl TextureOptions {
     /// The texture of a source.
     ///
     /// # Errors
-    /// [`Error::Texture`]; [`Error::TextureFileUnreadable`], [`Error::BadTextureFile`]; [`Error::TextureSymmetry`] where a measured map
+    /// [`Error::Texture`]; [`Error::Unreadable`], [`Error::BadLine`]; [`Error::TextureSymmetry`] where a measured map
     /// has crystals of another symmetry, which `option` asks for.
     fn read(
         &self,
@@ -43,7 +43,7 @@ impl TextureOptions {
                     });
                 }
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
-                Texture::of_list(&found.orientations, None, &name).ok_or_else(|| Error::BadTextureFile {
+                Texture::of_list(&found.orientations, None, &name).ok_or_else(|| Error::BadLine {
                     path: path.clone(),
                     line: 1,
                     problem: "no orientation has a weight above 0; give at least one".to_owned(),

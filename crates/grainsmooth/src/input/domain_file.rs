@@ -7,6 +7,7 @@ use glam::DVec3;
 use voronoi::{Dimension, Domain, VoronoiError, WallPlane};
 
 use crate::Error;
+use crate::files::TEXT_FILE;
 use crate::mesh::file::read_mesh;
 
 /// The body in the surface of a mesh file.
@@ -24,11 +25,14 @@ pub(crate) fn surface_domain(path: &Path) -> Result<Domain, Error> {
 /// so is a first line of names.
 ///
 /// # Errors
-/// [`Error::DomainFileUnreadable`]; [`Error::BadHalfSpaceLine`] and [`Error::HalfSpaceInFile`] name a line,
+/// [`Error::Unreadable`]; [`Error::BadHalfSpaceLine`] and [`Error::HalfSpaceInFile`] name a line,
 /// [`Error::DomainInFile`] what is wrong with all of them.
 pub(crate) fn half_space_domain(path: &Path, dimension: Dimension) -> Result<Domain, Error> {
-    let text = fs::read_to_string(path)
-        .map_err(|cause| Error::DomainFileUnreadable { path: path.to_owned(), cause })?;
+    let text = fs::read_to_string(path).map_err(|cause| Error::Unreadable {
+        path: path.to_owned(),
+        kind: TEXT_FILE,
+        cause,
+    })?;
     let (mut walls, mut lines) = (Vec::new(), Vec::new());
     for (line, text) in (1..).zip(text.lines().map(|line| line.trim_start_matches('\u{feff}').trim())) {
         if text.is_empty() || text.starts_with('#') {

@@ -1,8 +1,6 @@
 //! Seeds from files.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io;
 use std::path::Path;
 
 use glam::{BVec3, DVec3};
@@ -10,6 +8,7 @@ use voronoi::Dimension;
 
 use crate::Error;
 use crate::error::seed_file::{SeedPlace, SeedProblem};
+use crate::files::read_input;
 
 mod json;
 mod lines;
@@ -86,10 +85,10 @@ impl SeedFormat {
 /// ```
 ///
 /// # Errors
-/// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
+/// [`Error::Unreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
 /// [`Error::BadSeed`] at the first place that is not as above or holds a number that is not finite.
 pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<FileSeeds, Error> {
-    let content = content(path)?;
+    let content = read_input(path, "file")?;
     let alone = |seeds| FileSeeds { seeds, passed_over: None };
     let seeds = match SeedFormat::of_path(path) {
         SeedFormat::Csv => lines::csv(&content, dimension).map(alone),
@@ -154,11 +153,7 @@ pub fn read_file_domain(path: &Path) -> Result<Option<FileDomain>, Error> {
     if SeedFormat::of_path(path) != SeedFormat::Tess {
         return Ok(None);
     }
-    tess::domain(&content(path)?).map(Some).map_err(|problem| located(path, problem))
-}
-
-fn content(path: &Path) -> Result<Vec<u8>, Error> {
-    fs::read(path).map_err(|cause: io::Error| Error::SeedFileUnreadable { path: path.to_owned(), cause })
+    tess::domain(&read_input(path, "file")?).map(Some).map_err(|problem| located(path, problem))
 }
 
 fn located(path: &Path, (place, problem): (SeedPlace, SeedProblem)) -> Error {

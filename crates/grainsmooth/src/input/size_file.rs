@@ -1,6 +1,5 @@
 //! Sizes of grains from text files.
 
-use std::fs;
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
@@ -13,6 +12,7 @@ use crate::config::laws::LawKind;
 use crate::config::shapes::{MOST_RATIO, are_good_lengths};
 use crate::error::Error;
 use crate::files::text_table::{self, TextProblem};
+use crate::files::{TEXT_FILE, read_input};
 
 /// The line of a fault, counted from 1, and what it is.
 pub(crate) type Fault = (usize, String);
@@ -20,7 +20,7 @@ pub(crate) type Fault = (usize, String);
 /// Reads diameters: a list of them, or of volumes; a histogram; or a distribution function.
 ///
 /// # Errors
-/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Table, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
@@ -58,7 +58,7 @@ pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Ta
 /// Reads the volume of each grain (in the plane: area).
 ///
 /// # Errors
-/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<f64>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
@@ -98,7 +98,7 @@ pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<
 /// Reads what diameters are multiplied by along an axis: positions, and factors there.
 ///
 /// # Errors
-/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
@@ -133,7 +133,7 @@ pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
 /// Reads tensions over the disorientation: angles in degrees, and the values there.
 ///
 /// # Errors
-/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_law_file(path: &Path, kind: LawKind) -> Result<Vec<[f64; 2]>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
@@ -170,7 +170,7 @@ pub(crate) fn read_law_file(path: &Path, kind: LawKind) -> Result<Vec<[f64; 2]>,
 /// the angle of the first with x.
 ///
 /// # Errors
-/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_shape_file(path: &Path, dimension: Dimension) -> Result<Vec<GrainShape>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
@@ -224,8 +224,8 @@ fn volume_names(dimension: Dimension) -> &'static [&'static str] {
 }
 
 fn read<T>(path: &Path, parse: impl FnOnce(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
-    let bytes = fs::read(path).map_err(|cause| Error::SizeFileUnreadable { path: path.to_owned(), cause })?;
-    parse(&bytes).map_err(|(line, problem)| Error::BadSizeFile { path: path.to_owned(), line, problem })
+    let bytes = read_input(path, TEXT_FILE)?;
+    parse(&bytes).map_err(|(line, problem)| Error::BadLine { path: path.to_owned(), line, problem })
 }
 
 /// The lines of a table, which begins with the names of its columns or has none.

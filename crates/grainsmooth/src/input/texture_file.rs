@@ -1,7 +1,6 @@
 //! Orientations from files.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 use texture::{AngleHistogram, CrystalSymmetry, Orientation};
@@ -9,6 +8,7 @@ use texture::{AngleHistogram, CrystalSymmetry, Orientation};
 use crate::config::texture::TextureFormat;
 use crate::error::Error;
 use crate::files::text_table::TextProblem;
+use crate::files::{TEXT_FILE, read_input};
 use crate::maps::orientation_map::{self, Fault, PointList, number};
 
 mod euler;
@@ -27,10 +27,9 @@ pub struct OrientationList {
 /// Reads the orientations of a file, of one phase where a map has several; of one without a known extension as a table of Euler angles.
 ///
 /// # Errors
-/// [`Error::TextureFileUnreadable`]; [`Error::BadTextureFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub fn read_texture_file(path: &Path, phase: Option<i64>) -> Result<OrientationList, Error> {
-    let bytes =
-        fs::read(path).map_err(|cause| Error::TextureFileUnreadable { path: path.to_owned(), cause })?;
+    let bytes = read_input(path, TEXT_FILE)?;
     // Names of phases and comments may have any coding; numbers have one.
     let text = String::from_utf8_lossy(&bytes);
     let found = match TextureFormat::of_path(path) {
@@ -47,16 +46,15 @@ pub fn read_texture_file(path: &Path, phase: Option<i64>) -> Result<OrientationL
         true => Err((1, "holds no orientation; give a file with one or more".to_owned())),
         false => Ok(found),
     });
-    found.map_err(|(line, problem)| Error::BadTextureFile { path: path.to_owned(), line, problem })
+    found.map_err(|(line, problem)| Error::BadLine { path: path.to_owned(), line, problem })
 }
 
 /// Reads a histogram of disorientation angles: the upper end of each bin in degrees, and its weight.
 ///
 /// # Errors
-/// [`Error::TextureFileUnreadable`]; [`Error::BadTextureFile`].
+/// [`Error::Unreadable`]; [`Error::BadLine`].
 pub fn read_disorientation_file(path: &Path, symmetry: CrystalSymmetry) -> Result<AngleHistogram, Error> {
-    let bytes =
-        fs::read(path).map_err(|cause| Error::TextureFileUnreadable { path: path.to_owned(), cause })?;
+    let bytes = read_input(path, TEXT_FILE)?;
     let read = || {
         let numbered = histogram::read(&bytes)?;
         let (lines, bins): (Vec<usize>, Vec<(f64, f64)>) = numbered.into_iter().unzip();
@@ -65,7 +63,7 @@ pub fn read_disorientation_file(path: &Path, symmetry: CrystalSymmetry) -> Resul
             (line.unwrap_or(1), error.to_string())
         })
     };
-    read().map_err(|(line, problem)| Error::BadTextureFile { path: path.to_owned(), line, problem })
+    read().map_err(|(line, problem)| Error::BadLine { path: path.to_owned(), line, problem })
 }
 
 fn of_text((line, problem): (usize, TextProblem)) -> Fault {

@@ -58,7 +58,7 @@ impl MeasuredSample {
     /// columns has grains of `dimension`.
     ///
     /// # Errors
-    /// [`Error::MeshFile`], [`Error::SizeFileUnreadable`] and [`Error::BadSizeFile`].
+    /// [`Error::MeshFile`], [`Error::Unreadable`] and [`Error::BadLine`].
     pub fn read(path: &Path, dimension: Option<Dimension>) -> Result<Self, Error> {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         let problem = |problem| Error::MeshFile { path: path.to_owned(), problem };

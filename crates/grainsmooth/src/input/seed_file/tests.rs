@@ -2,6 +2,8 @@
 
 use proptest::prelude::*;
 
+use std::fs;
+
 use super::*;
 
 fn read(content: impl AsRef<[u8]>, dimension: Dimension) -> Result<Vec<FileSeed>, String> {

@@ -1,7 +1,6 @@
 //! Grains of a table: those of `--cells-csv`, `--cells-json`, `--stats`, of [`SampleReport`](crate::SampleReport), or of other programs.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 use glam::{BVec3, DVec3};
@@ -11,6 +10,7 @@ use voronoi::Dimension;
 
 use super::{MeasuredGrain, MeasuredSample};
 use crate::Error;
+use crate::files::{TEXT_FILE, read_input};
 use crate::input::size_file::{DIAMETERS, Rows};
 
 /// Columns that only tables of grains in the plane have.
@@ -45,8 +45,8 @@ impl Row {
 }
 
 pub(super) fn read(path: &Path, dimension: Option<Dimension>) -> Result<MeasuredSample, Error> {
-    let bytes = fs::read(path).map_err(|cause| Error::SizeFileUnreadable { path: path.to_owned(), cause })?;
-    let bad = |line, problem: String| Error::BadSizeFile { path: path.to_owned(), line, problem };
+    let bytes = read_input(path, TEXT_FILE)?;
+    let bad = |line, problem: String| Error::BadLine { path: path.to_owned(), line, problem };
     let rows = if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
         rows_of_json(&bytes)
     } else {

@@ -1,7 +1,6 @@
 //! Grains of a tessellation in Neper's format.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 use glam::{BVec3, DVec3};
@@ -9,17 +8,18 @@ use polycrystal::{BoundaryId, Elements, GrainId, Side, Surface};
 use voronoi::Dimension;
 
 use super::{MeasuredSample, grains_of};
+use crate::files::{TEXT_FILE, read_input};
 use crate::{Error, Tess, TessProblem, read_tess};
 
 pub(super) fn read(path: &Path) -> Result<MeasuredSample, Error> {
-    let bytes = fs::read(path).map_err(|cause| Error::SizeFileUnreadable { path: path.to_owned(), cause })?;
+    let bytes = read_input(path, TEXT_FILE)?;
     let tess = read_tess(&String::from_utf8_lossy(&bytes)).map_err(|TessProblem { line, what }| {
-        Error::BadSizeFile { path: path.to_owned(), line, problem: what }
+        Error::BadLine { path: path.to_owned(), line, problem: what }
     })?;
     let sample = of_tess(&tess).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })?;
     if sample.grains.is_empty() {
         let problem = "holds no cells; give a file with one or more".to_owned();
-        return Err(Error::BadSizeFile { path: path.to_owned(), line: 1, problem });
+        return Err(Error::BadLine { path: path.to_owned(), line: 1, problem });
     }
     Ok(sample)
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::super::refusal::name;
 use crate::Error;
+use crate::files::read_input;
 use crate::vtk::{Element, document};
 
 /// A file of a series.
@@ -44,8 +45,7 @@ pub(super) fn network_of(path: &Path) -> Result<PathBuf, Error> {
 
 /// The files that one of VTK's collections names, each with an attribute of its element.
 fn files_of(path: &Path, attribute: &str) -> Result<Vec<(Option<String>, PathBuf)>, Error> {
-    let text =
-        std::fs::read(path).map_err(|cause| Error::CollectionUnreadable { path: path.to_owned(), cause })?;
+    let text = read_input(path, "file")?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let document = document(&text);
     let file =
