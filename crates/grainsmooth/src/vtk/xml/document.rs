@@ -36,21 +36,30 @@ pub(super) fn document<'a>(
     let points = elements(&[points], numbers);
     let (of_points, of_cells) = (elements(&data.point_arrays, numbers), elements(&data.cell_arrays, numbers));
     let topology = elements(&topology(data, format), numbers);
-    let shaded = |arrays: &[Array<'_>]| match arrays.iter().any(is_normals) {
-        true => format!(" Normals=\"{NORMALS}\""),
-        false => String::new(),
+    let attributes = |name: &str, arrays: &[Array<'_>], elements: String| {
+        let shaded =
+            if arrays.iter().any(is_normals) { format!(" Normals=\"{NORMALS}\"") } else { String::new() };
+        group(name, &shaded, &elements)
     };
     format!(
-        "{}<{kind}><FieldData>{field}</FieldData>\
-         <Piece NumberOfPoints=\"{}\" NumberOf{cells}=\"{}\">\
-         <PointData{}>{of_points}</PointData><CellData{}>{of_cells}</CellData>\
-         <Points>{points}</Points><{cells}>{topology}</{cells}></Piece></{kind}>",
+        "{}<{kind}>{}<Piece NumberOfPoints=\"{}\" NumberOf{cells}=\"{}\">{}{}{}{}</Piece></{kind}>",
         head(kind, numbers),
+        group("FieldData", "", &field),
         data.points.len(),
         data.cells.len(),
-        shaded(&data.point_arrays),
-        shaded(&data.cell_arrays),
+        attributes("PointData", &data.point_arrays, of_points),
+        attributes("CellData", &data.cell_arrays, of_cells),
+        group("Points", "", &points),
+        group(cells, "", &topology),
     )
+}
+
+/// An element around others.
+fn group(name: &str, attributes: &str, elements: &str) -> String {
+    match elements {
+        "" => format!("<{name}{attributes}/>"),
+        _ => format!("<{name}{attributes}>{elements}</{name}>"),
+    }
 }
 
 /// The arrays that tell which points are in which cell.
