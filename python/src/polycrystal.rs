@@ -308,9 +308,10 @@ impl Polycrystal {
 }
 
 fn picture([width, height]: [u16; 2], color_by: &str, explode: f64) -> PyResult<Picture> {
-    let coloring = Coloring::ALL.into_iter().find(|coloring| coloring.name() == color_by);
+    let coloring =
+        Coloring::ALL.into_iter().find(|(_, name)| *name == color_by).map(|(coloring, _)| coloring);
     let coloring = coloring.ok_or_else(|| {
-        let known = Coloring::ALL.map(Coloring::name).join(", ");
+        let known = Coloring::ALL.map(|(_, name)| name).join(", ");
         PyValueError::new_err(format!("color_by: {color_by:?} is none of {known}"))
     })?;
     if !(0.0..=10.0).contains(&explode) {

@@ -38,29 +38,16 @@ pub enum AngleClass {
 }
 
 impl AngleClass {
-    /// All classes.
-    pub const ALL: [Self; 7] = [
-        Self::Walls,
-        Self::Periodic,
-        Self::Cut,
-        Self::Equilibrium,
-        Self::Shapes,
-        Self::Unregularized,
-        Self::Plane,
+    /// All classes, in a few words.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::Walls, "walls"),
+        (Self::Periodic, "periodic"),
+        (Self::Cut, "cut at the box"),
+        (Self::Equilibrium, "equilibrium"),
+        (Self::Shapes, "grain shapes"),
+        (Self::Unregularized, "flat or not regularized"),
+        (Self::Plane, "plane"),
     ];
-
-    /// The class in a few words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Walls => "walls",
-            Self::Periodic => "periodic",
-            Self::Cut => "cut at the box",
-            Self::Equilibrium => "equilibrium",
-            Self::Shapes => "grain shapes",
-            Self::Unregularized => "flat or not regularized",
-            Self::Plane => "plane",
-        }
-    }
 }
 
 /// A run before it runs.

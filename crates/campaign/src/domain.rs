@@ -26,17 +26,17 @@ impl Domain {
         let sides: Vec<f64> = proportions.iter().map(|side| side * scale).collect();
         let mut domain = Self { sides, inner: 1.0, is_periodic: false, is_cut: false, files: Vec::new() };
         match draw.weighted(&[
-            (0.45, Kind::Walls),
-            (0.42, Kind::Periodic),
-            (0.09, Kind::Curved),
-            (0.03, Kind::Planes),
-            (0.02, Kind::Surface),
+            (0.45, "walls"),
+            (0.42, "periodic"),
+            (0.09, "curved"),
+            (0.03, "planes"),
+            (0.02, "surface"),
         ]) {
-            Kind::Walls => {}
-            Kind::Periodic => domain.repeat(draw, options),
-            Kind::Curved => domain.curve(draw, options),
-            Kind::Planes => domain.cut_corners(draw, options),
-            Kind::Surface => domain.close_surface(options),
+            "periodic" => domain.repeat(draw, options),
+            "curved" => domain.curve(draw, options),
+            "planes" => domain.cut_corners(draw, options),
+            "surface" => domain.close_surface(options),
+            _ => {}
         }
         if domain.files.is_empty() {
             options.set("box", &domain.sides);
@@ -128,15 +128,6 @@ impl Domain {
         // The box of a third of the sides touches the faces.
         self.inner = 0.33;
     }
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Walls,
-    Periodic,
-    Curved,
-    Planes,
-    Surface,
 }
 
 /// Sides of a box in proportion: a cube, or up to 20:1.

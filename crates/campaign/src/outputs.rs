@@ -40,16 +40,16 @@ pub fn draw(draw: &mut Draw, dimension: usize, options: &mut Options) -> Promise
         options.set("cells-csv", ["cells.csv"]);
         promise.file("cells", "cells.csv");
     }
-    match draw.weighted(&[(0.02, Mode::NoMesh), (0.02, Mode::DryRun), (0.96, Mode::Whole)]) {
-        Mode::NoMesh => {
+    match draw.weighted(&[(0.02, "no-mesh"), (0.02, "dry-run"), (0.96, "whole")]) {
+        "no-mesh" => {
             options.switch("no-mesh");
             return promise;
         }
-        Mode::DryRun => {
+        "dry-run" => {
             options.switch("dry-run");
             return Promise { prints: true, ..Promise::default() };
         }
-        Mode::Whole => {}
+        _ => {}
     }
     network(draw, dimension, options, &mut promise);
     if promise.surface.is_some() || draw.chance(0.2) {
@@ -87,13 +87,6 @@ fn texture(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &m
     promise.file("orientations", name.clone());
     outputs.push(name);
     options.set("output", outputs);
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Mode {
-    NoMesh,
-    DryRun,
-    Whole,
 }
 
 fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {

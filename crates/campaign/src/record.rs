@@ -134,7 +134,7 @@ fn write_kinds<'a>(out: &mut fmt::Formatter<'_>, records: impl Iterator<Item = &
 
 /// How many runs of each class have thin triangles.
 fn write_angles(out: &mut fmt::Formatter<'_>, all: &[Record]) -> fmt::Result {
-    for class in AngleClass::ALL {
+    for (class, name) in AngleClass::ALL {
         let of_class = all.iter().filter(|record| record.angle_class == class);
         let angles: Vec<f64> = of_class.clone().filter_map(|record| record.least_angle).collect();
         if angles.is_empty() {
@@ -146,8 +146,7 @@ fn write_angles(out: &mut fmt::Formatter<'_>, all: &[Record]) -> fmt::Result {
         let percentile = percentiles.fold(f64::INFINITY, f64::min);
         writeln!(
             out,
-            "angles          {}: {thin} of {} below {THIN} degrees, least {least:.2}; a hundredth below {percentile:.1} at worst",
-            class.name(),
+            "angles          {name}: {thin} of {} below {THIN} degrees, least {least:.2}; a hundredth below {percentile:.1} at worst",
             angles.len()
         )?;
     }

@@ -38,25 +38,26 @@ pub enum Arrangement {
 }
 
 impl Arrangement {
-    const WEIGHTS: [(f64, Self); 13] = [
-        (6.0, Self::Random),
-        (1.0, Self::PoissonDisc),
-        (1.5, Self::Lattice),
-        (1.0, Self::Uniform),
-        (2.0, Self::JitteredLattice),
-        (2.0, Self::Clusters),
-        (0.5, Self::Corner),
-        (1.0, Self::Gradient),
-        (1.0, Self::Coplanar),
-        (1.5, Self::Twins),
-        (1.5, Self::Radii),
-        (0.7, Self::Giant),
-        (1.0, Self::Grid),
+    /// All with their weights, in a word or two.
+    const ALL: [(f64, Self, &'static str); 13] = [
+        (6.0, Self::Random, "random"),
+        (1.0, Self::PoissonDisc, "poisson-disc"),
+        (1.5, Self::Lattice, "lattice"),
+        (1.0, Self::Uniform, "uniform file"),
+        (2.0, Self::JitteredLattice, "jittered lattice"),
+        (2.0, Self::Clusters, "clusters"),
+        (0.5, Self::Corner, "corner"),
+        (1.0, Self::Gradient, "gradient"),
+        (1.0, Self::Coplanar, "coplanar"),
+        (1.5, Self::Twins, "twins"),
+        (1.5, Self::Radii, "radii"),
+        (0.7, Self::Giant, "one giant"),
+        (1.0, Self::Grid, "grid"),
     ];
 
     /// Draws one.
     pub fn draw(draw: &mut Draw) -> Self {
-        draw.weighted(&Self::WEIGHTS)
+        draw.weighted(&Self::ALL.map(|(weight, one, _)| (weight, one)))
     }
 
     /// Whether grains can have given volumes: seeds that nearly coincide leave no room for them.
@@ -66,21 +67,7 @@ impl Arrangement {
 
     /// The arrangement in a word or two.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Random => "random",
-            Self::PoissonDisc => "poisson-disc",
-            Self::Lattice => "lattice",
-            Self::Uniform => "uniform file",
-            Self::JitteredLattice => "jittered lattice",
-            Self::Clusters => "clusters",
-            Self::Corner => "corner",
-            Self::Gradient => "gradient",
-            Self::Coplanar => "coplanar",
-            Self::Twins => "twins",
-            Self::Radii => "radii",
-            Self::Giant => "one giant",
-            Self::Grid => "grid",
-        }
+        Self::ALL.into_iter().find(|(_, one, _)| *one == self).map_or("", |(.., name)| name)
     }
 }
 

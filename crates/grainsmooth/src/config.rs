@@ -34,11 +34,11 @@ use lattice::Lattice;
 use laws::LawOptions;
 use phases::PhaseOptions;
 use settings::{
-    as_axes, as_axis_names, as_lengths, as_rule, as_time, by_option, is_equiaxed, junctions, parse_relaxation,
+    JUNCTIONS, as_axes, as_axis_names, as_lengths, as_rule, as_time, by_option, is_equiaxed, parse_relaxation,
 };
 use shapes::ShapeSource;
 use sizes::SizeOptions;
-use spelling::{as_number, as_text_if_given, as_texts, as_true, is_usual, number, whole_number};
+use spelling::{as_number, as_text_if_given, as_texts, as_true, is_usual, number, one_of, whole_number};
 use texture::TextureOptions;
 
 /// The largest length of `--regularize`: edges as long as half a grain are no small features.
@@ -305,7 +305,7 @@ pub struct Config {
     /// Smooth the triple lines (crease), or leave them as polylines through their control points (corner)
     ///
     /// Example: --junctions corner
-    #[arg(long, help_heading = "Smoothing", value_name = "RULE", default_value = "crease", value_parser = junctions())]
+    #[arg(long, help_heading = "Smoothing", value_name = "RULE", default_value = "crease", value_parser = one_of(&JUNCTIONS))]
     #[serde(serialize_with = "as_rule")]
     pub junctions: Junctions,
 

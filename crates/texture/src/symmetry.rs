@@ -69,38 +69,29 @@ impl CrystalSymmetry {
         Self::Octahedral,
     ];
 
+    /// In words, as a group of rotations and as a Laue group, in the order of [`ALL`](Self::ALL).
+    const NAMES: [[&str; 3]; 11] = [
+        ["triclinic", "1", "-1"],
+        ["monoclinic", "2", "2/m"],
+        ["orthorhombic", "222", "mmm"],
+        ["4/m", "4", "4/m"],
+        ["tetragonal", "422", "4/mmm"],
+        ["-3", "3", "-3"],
+        ["trigonal", "32", "-3m"],
+        ["6/m", "6", "6/m"],
+        ["hexagonal", "622", "6/mmm"],
+        ["m-3", "23", "m-3"],
+        ["cubic", "432", "m-3m"],
+    ];
+
     /// The group of rotations by Hermann and Mauguin, such as 432.
     pub fn rotation_group(self) -> &'static str {
-        match self {
-            Self::Triclinic => "1",
-            Self::Monoclinic => "2",
-            Self::Orthorhombic => "222",
-            Self::TetragonalLow => "4",
-            Self::Tetragonal => "422",
-            Self::TrigonalLow => "3",
-            Self::Trigonal => "32",
-            Self::HexagonalLow => "6",
-            Self::Hexagonal => "622",
-            Self::Tetrahedral => "23",
-            Self::Octahedral => "432",
-        }
+        Self::NAMES[self as usize][1]
     }
 
     /// The Laue group: these rotations and the inversion, such as m-3m.
     pub fn laue_group(self) -> &'static str {
-        match self {
-            Self::Triclinic => "-1",
-            Self::Monoclinic => "2/m",
-            Self::Orthorhombic => "mmm",
-            Self::TetragonalLow => "4/m",
-            Self::Tetragonal => "4/mmm",
-            Self::TrigonalLow => "-3",
-            Self::Trigonal => "-3m",
-            Self::HexagonalLow => "6/m",
-            Self::Hexagonal => "6/mmm",
-            Self::Tetrahedral => "m-3",
-            Self::Octahedral => "m-3m",
-        }
+        Self::NAMES[self as usize][2]
     }
 
     /// Number of rotations.
@@ -176,16 +167,7 @@ fn cleaned(rotation: DQuat) -> DQuat {
 
 impl fmt::Display for CrystalSymmetry {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Triclinic => "triclinic",
-            Self::Monoclinic => "monoclinic",
-            Self::Orthorhombic => "orthorhombic",
-            Self::Tetragonal => "tetragonal",
-            Self::Trigonal => "trigonal",
-            Self::Hexagonal => "hexagonal",
-            Self::Octahedral => "cubic",
-            low => low.laue_group(),
-        })
+        formatter.write_str(Self::NAMES[*self as usize][0])
     }
 }
 
@@ -195,11 +177,7 @@ impl FromStr for CrystalSymmetry {
     /// By word, group of rotations, or Laue group.
     fn from_str(name: &str) -> Result<Self, SymmetryError> {
         let wanted = name.trim().to_lowercase();
-        let is_named = |symmetry: &Self| {
-            [symmetry.rotation_group(), symmetry.laue_group(), symmetry.to_string().as_str()]
-                .contains(&wanted.as_str())
-        };
-        let found = Self::ALL.into_iter().find(is_named);
+        let found = Self::ALL.into_iter().find(|one| Self::NAMES[*one as usize].contains(&wanted.as_str()));
         found.ok_or_else(|| SymmetryError { name: name.to_owned() })
     }
 }

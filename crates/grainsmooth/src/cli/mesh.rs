@@ -9,6 +9,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
 use super::files::VtkArguments;
+use crate::spelling::{Named, one_of};
 use shown::ShownArguments;
 
 mod shown;
@@ -106,8 +107,8 @@ pub struct FeatureArguments {
     pub creases: Vec<Crease>,
 
     /// Boundary points of a single face: smoothed along the boundary (edge) or fixed (edge-corner) [default: edge]
-    #[arg(long, value_enum)]
-    pub boundary: Option<Boundary>,
+    #[arg(long, value_parser = one_of(&BOUNDARIES))]
+    pub boundary: Option<BoundaryRule>,
 }
 
 #[derive(Debug, Args)]
@@ -156,8 +157,8 @@ pub struct LoopArguments {
     pub scheme: SchemeArguments,
 
     /// Weights of the neighbours of a point
-    #[arg(long, value_enum, default_value_t = Weights::Loop)]
-    pub weights: Weights,
+    #[arg(long, value_parser = one_of(&WEIGHTS), default_value = "loop")]
+    pub weights: LoopWeights,
 }
 
 #[derive(Debug, Args)]
@@ -166,8 +167,8 @@ pub struct DooSabinArguments {
     pub scheme: SchemeArguments,
 
     /// The weights of Doo and Sabin, or the mean of centroid, corner and midpoints
-    #[arg(long, value_enum, default_value_t = PolygonWeights::DooSabin)]
-    pub weights: PolygonWeights,
+    #[arg(long, value_parser = one_of(&POLYGON_WEIGHTS), default_value = "doo-sabin")]
+    pub weights: DooSabinWeights,
 }
 
 #[derive(Debug, Args)]
@@ -183,12 +184,12 @@ pub struct LimitArguments {
     pub levels: u32,
 
     /// Subdivision scheme
-    #[arg(long, value_enum, default_value_t = LimitScheme::Loop)]
-    pub scheme: LimitScheme,
+    #[arg(long, value_parser = one_of(&LIMIT_SCHEMES), default_value = "loop")]
+    pub scheme: Scheme,
 
     /// Weights of Loop's scheme
-    #[arg(long, value_enum, default_value_t = Weights::Loop)]
-    pub weights: Weights,
+    #[arg(long, value_parser = one_of(&WEIGHTS), default_value = "loop")]
+    pub weights: LoopWeights,
 }
 
 #[derive(Debug, Args)]
@@ -274,53 +275,28 @@ pub enum Merge {
     Open,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Boundary {
-    Edge,
-    EdgeCorner,
-}
+const BOUNDARIES: [Named<BoundaryRule>; 2] =
+    [("edge", "", BoundaryRule::Edge), ("edge-corner", "", BoundaryRule::EdgeCorner)];
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Weights {
-    /// Loop 1987
-    Loop,
-    /// Warren 1995
-    Warren,
-    /// Loop's, and those of Biermann, Levin and Zorin 2000 at creases
-    BiermannLevinZorin,
-}
+const WEIGHTS: [Named<LoopWeights>; 3] = [
+    ("loop", "Loop 1987", LoopWeights::Loop),
+    ("warren", "Warren 1995", LoopWeights::Warren),
+    (
+        "biermann-levin-zorin",
+        "Loop's, and those of Biermann, Levin and Zorin 2000 at creases",
+        LoopWeights::BiermannLevinZorin,
+    ),
+];
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum PolygonWeights {
-    DooSabin,
-    Means,
-}
+const POLYGON_WEIGHTS: [Named<DooSabinWeights>; 2] =
+    [("doo-sabin", "", DooSabinWeights::DooSabin), ("means", "", DooSabinWeights::Means)];
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum LimitScheme {
-    Loop,
-    CatmullClark,
-    BSpline,
-}
-
-impl From<Boundary> for BoundaryRule {
-    fn from(boundary: Boundary) -> Self {
-        match boundary {
-            Boundary::Edge => Self::Edge,
-            Boundary::EdgeCorner => Self::EdgeCorner,
-        }
-    }
-}
-
-impl From<Weights> for LoopWeights {
-    fn from(weights: Weights) -> Self {
-        match weights {
-            Weights::Loop => Self::Loop,
-            Weights::Warren => Self::Warren,
-            Weights::BiermannLevinZorin => Self::BiermannLevinZorin,
-        }
-    }
-}
+/// Loop's scheme is with the weights of another option.
+const LIMIT_SCHEMES: [Named<Scheme>; 3] = [
+    ("loop", "", Scheme::Loop(LoopWeights::Loop)),
+    ("catmull-clark", "", Scheme::CatmullClark),
+    ("b-spline", "", Scheme::BSpline),
+];
 
 /// What a subcommand asks for, subcommands of a kind together.
 pub enum Task<'a> {
@@ -343,25 +319,18 @@ impl MeshCommand {
     /// The files, and what to do.
     pub fn task(&self) -> (&FileArguments, Task<'_>) {
         let (scheme, arguments) = match self {
-            Self::Loop(arguments) => (Scheme::Loop(arguments.weights.into()), &arguments.scheme),
+            Self::Loop(arguments) => (Scheme::Loop(arguments.weights), &arguments.scheme),
             Self::Butterfly(arguments) => (Scheme::Butterfly, arguments),
             Self::ModifiedButterfly(arguments) => (Scheme::ModifiedButterfly, arguments),
             Self::Midpoint(arguments) => (Scheme::Midpoint, arguments),
-            Self::DooSabin(arguments) => {
-                let weights = match arguments.weights {
-                    PolygonWeights::DooSabin => DooSabinWeights::DooSabin,
-                    PolygonWeights::Means => DooSabinWeights::Means,
-                };
-                (Scheme::DooSabin(weights), &arguments.scheme)
-            }
+            Self::DooSabin(arguments) => (Scheme::DooSabin(arguments.weights), &arguments.scheme),
             Self::CatmullClark(arguments) => (Scheme::CatmullClark, arguments),
             Self::BSpline(arguments) => return arguments.task(Scheme::BSpline),
             Self::FourPoint(arguments) => return arguments.task(Scheme::FourPoint),
             Self::Limit(arguments) => {
                 let scheme = match arguments.scheme {
-                    LimitScheme::Loop => Scheme::Loop(arguments.weights.into()),
-                    LimitScheme::CatmullClark => Scheme::CatmullClark,
-                    LimitScheme::BSpline => Scheme::BSpline,
+                    Scheme::Loop(_) => Scheme::Loop(arguments.weights),
+                    scheme => scheme,
                 };
                 return (&arguments.files, Task::Limit(scheme, arguments));
             }

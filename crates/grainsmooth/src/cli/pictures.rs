@@ -90,14 +90,9 @@ impl PictureArguments {
     /// The picture asked for, its path found writable.
     pub fn picture(&self) -> Result<Option<(Picture, Output<Png>)>, Error> {
         let Some(path) = &self.picture else { return Ok(None) };
-        let at_least_one = |side: &u16| NonZeroU16::new(*side).unwrap_or(NonZeroU16::MIN);
-        let size = match self.picture_size.as_deref() {
-            Some([width, height]) => [width, height].map(at_least_one),
-            _ => Picture::SIZE,
-        };
         Ok(Some((
             Picture {
-                size,
+                size: picture_size(self.picture_size.as_deref()),
                 coloring: self.color_by,
                 explode: self.explode,
                 slice: self.slice,
@@ -113,10 +108,20 @@ impl PictureArguments {
     }
 }
 
+/// Pixels along both sides, the usual ones where none are given.
+pub(super) fn picture_size(sides: Option<&[u16]>) -> [NonZeroU16; 2] {
+    let at_least_one = |side: &u16| NonZeroU16::new(*side).unwrap_or(NonZeroU16::MIN);
+    match sides {
+        Some([width, height]) => [width, height].map(at_least_one),
+        _ => Picture::SIZE,
+    }
+}
+
 /// Every name of a way of colouring.
 fn colorings() -> impl TypedValueParser<Value = Coloring> {
-    let named = |name: String| Coloring::ALL.into_iter().find(|way| way.name() == name).unwrap_or_default();
-    PossibleValuesParser::new(Coloring::ALL.map(Coloring::name)).map(named)
+    let named = |name: String| Coloring::ALL.into_iter().find(|(_, known)| *known == name);
+    PossibleValuesParser::new(Coloring::ALL.map(|(_, name)| name))
+        .map(move |name| named(name).map(|(way, _)| way).unwrap_or_default())
 }
 
 pub(super) fn parse_png(text: &str) -> Result<PathBuf, String> {

@@ -97,13 +97,13 @@ impl SeedArguments {
 }
 
 fn parse_lattice(text: &str) -> Result<LatticeValue, String> {
-    if let Some(lattice) = Lattice::ALL.into_iter().find(|lattice| lattice.name() == text) {
+    if let Some((lattice, _)) = Lattice::ALL.into_iter().find(|(_, name)| *name == text) {
         return Ok(LatticeValue::Kind(lattice));
     }
     // A cube of so many cells has as many seeds as ids can name.
     let cells = whole_number(1..=1600_u32)(text).map(LatticeValue::Cells);
     cells.map_err(|remedy| {
-        let meant = nearest(text, Lattice::ALL.map(Lattice::name));
+        let meant = nearest(text, Lattice::ALL.map(|(_, name)| name));
         let hint = meant.map_or(String::new(), |name| format!("did you mean {name}? "));
         format!("{hint}the lattices are sc, bcc, fcc and hcp, and square and hex in 2D; then {remedy}")
     })

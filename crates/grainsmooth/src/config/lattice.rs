@@ -20,14 +20,14 @@ pub enum Lattice {
 }
 
 impl Lattice {
-    /// All lattices.
-    pub const ALL: [Self; 6] = [
-        Self::SimpleCubic,
-        Self::BodyCentredCubic,
-        Self::FaceCentredCubic,
-        Self::HexagonalClosePacked,
-        Self::Square,
-        Self::Hexagonal,
+    /// All lattices with their names on the command line.
+    pub const ALL: [(Self, &'static str); 6] = [
+        (Self::SimpleCubic, "sc"),
+        (Self::BodyCentredCubic, "bcc"),
+        (Self::FaceCentredCubic, "fcc"),
+        (Self::HexagonalClosePacked, "hcp"),
+        (Self::Square, "square"),
+        (Self::Hexagonal, "hex"),
     ];
 
     /// The dimension that the lattice belongs to.
@@ -40,13 +40,6 @@ impl Lattice {
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::SimpleCubic => "sc",
-            Self::BodyCentredCubic => "bcc",
-            Self::FaceCentredCubic => "fcc",
-            Self::HexagonalClosePacked => "hcp",
-            Self::Square => "square",
-            Self::Hexagonal => "hex",
-        }
+        Self::ALL.into_iter().find(|(one, _)| *one == self).map_or("", |(_, name)| name)
     }
 }

@@ -25,26 +25,19 @@ pub enum PhasePlace {
 }
 
 impl PhasePlace {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Interior,
-        Self::Boundaries,
-        Self::TripleLines,
-        Self::QuadruplePoints,
-        Self::Clustered,
-        Self::Dispersed,
+    /// All of them with their names in options and files.
+    pub const ALL: [(Self, &'static str); 6] = [
+        (Self::Interior, "interior"),
+        (Self::Boundaries, "boundaries"),
+        (Self::TripleLines, "triple-lines"),
+        (Self::QuadruplePoints, "quadruple-points"),
+        (Self::Clustered, "clustered"),
+        (Self::Dispersed, "dispersed"),
     ];
 
     /// Its name in options and files.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Interior => "interior",
-            Self::Boundaries => "boundaries",
-            Self::TripleLines => "triple-lines",
-            Self::QuadruplePoints => "quadruple-points",
-            Self::Clustered => "clustered",
-            Self::Dispersed => "dispersed",
-        }
+        Self::ALL.into_iter().find(|(one, _)| *one == self).map_or("", |(_, name)| name)
     }
 
     /// Where grains are put into others; nothing where they are cells like these.
@@ -78,9 +71,8 @@ impl FromStr for PhasePlace {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|place| place.name() == text)
-            .ok_or_else(|| format!("'{text}' is not a place; give {}", Self::ALL.map(Self::name).join(", ")))
+        let named = Self::ALL.into_iter().find(|(_, name)| *name == text).map(|(place, _)| place);
+        let known = || Self::ALL.map(|(_, name)| name).join(", ");
+        named.ok_or_else(|| format!("'{text}' is not a place; give {}", known()))
     }
 }

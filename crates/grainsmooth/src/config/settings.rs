@@ -1,12 +1,12 @@
 //! A config spelled out: as the options of a command line, and as the TOML text that every file carries.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Relaxation};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use toml::{Table, Value};
 use voronoi::Dimension;
 
+use super::spelling::Named;
 use super::{Config, SeedSource, Shape};
 
 /// The first words of the text in a file.
@@ -198,16 +198,10 @@ pub(super) fn as_time<S: Serializer>(
 const EQUILIBRIUM: &str = "equilibrium";
 
 /// The names of `--junctions`.
-const JUNCTIONS: [(&str, Junctions); 2] = [("crease", Junctions::Crease), ("corner", Junctions::Corner)];
-
-/// Reads `--junctions`.
-pub(super) fn junctions() -> impl TypedValueParser<Value = Junctions> {
-    let named = |name: String| JUNCTIONS.into_iter().find(|(known, _)| *known == name);
-    PossibleValuesParser::new(JUNCTIONS.map(|(name, _)| name))
-        .map(move |name| named(name).map(|(_, rule)| rule).unwrap_or_default())
-}
+pub(super) const JUNCTIONS: [Named<Junctions>; 2] =
+    [("crease", "", Junctions::Crease), ("corner", "", Junctions::Corner)];
 
 pub(super) fn as_rule<S: Serializer>(rule: &Junctions, serializer: S) -> Result<S::Ok, S::Error> {
-    let named = JUNCTIONS.into_iter().find(|(_, known)| known == rule);
-    serializer.collect_str(named.map_or("", |(name, _)| name))
+    let named = JUNCTIONS.into_iter().find(|(.., known)| known == rule);
+    serializer.collect_str(named.map_or("", |(name, ..)| name))
 }

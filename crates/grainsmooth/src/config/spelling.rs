@@ -5,6 +5,7 @@ use std::ops::{RangeBounds, RangeInclusive};
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::BVec3;
 use serde::Serializer;
 use voronoi::Domain;
@@ -42,6 +43,21 @@ pub(crate) fn number(
     remedy: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| remedy.to_owned())
+}
+
+/// A name, its help and what it stands for.
+pub(crate) type Named<T> = (&'static str, &'static str, T);
+
+/// One of some values by its name.
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
+    named: &'static [Named<T>],
+) -> impl TypedValueParser<Value = T> {
+    let possible = named.iter().map(|(name, help, _)| match *help {
+        "" => PossibleValue::new(*name),
+        help => PossibleValue::new(*name).help(help),
+    });
+    let value = |name: String| named.iter().find(|(known, ..)| *known == name).map(|(.., value)| *value);
+    PossibleValuesParser::new(possible).try_map(move |name| value(name).ok_or("no value has this name"))
 }
 
 /// Axes by name, or none.

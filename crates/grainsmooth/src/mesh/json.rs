@@ -89,7 +89,7 @@ pub fn levels_json(mesh: &MeshFile, scheme: Scheme, levels: &[Level], out: &mut 
     let is_curve = matches!(scheme, Scheme::BSpline | Scheme::FourPoint);
     let sectors = limits.iter().filter(|(level, _)| *level == 0).flat_map(|(_, found)| &found.sectors);
     let file = LevelsFile {
-        scheme: name(scheme),
+        scheme: scheme.reference_name(),
         source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
         boundary: boundary(mesh.boundary),
         vertices: bytemuck::cast_slice(&mesh.points),
@@ -127,19 +127,6 @@ fn boundary(rule: BoundaryRule) -> &'static str {
 
 fn creases(mesh: &MeshFile) -> Vec<(u32, u32, f32)> {
     mesh.creases.iter().map(|crease| (crease.ends[0], crease.ends[1], crease.sharpness)).collect()
-}
-
-fn name(scheme: Scheme) -> &'static str {
-    match scheme {
-        Scheme::Loop(_) => "loop",
-        Scheme::Butterfly => "butterfly",
-        Scheme::ModifiedButterfly => "modified butterfly",
-        Scheme::Midpoint => "midpoint",
-        Scheme::DooSabin(_) => "doo-sabin",
-        Scheme::CatmullClark => "catmull-clark",
-        Scheme::BSpline => "cubic b-spline",
-        Scheme::FourPoint => "four-point",
-    }
 }
 
 fn level_entry(scheme: Scheme, index: usize, pair: &[Level]) -> LevelEntry<'_> {

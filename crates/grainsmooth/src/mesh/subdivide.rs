@@ -34,6 +34,31 @@ pub enum Scheme {
     FourPoint,
 }
 
+/// The schemes by their names on the command line, with those in the reference files of subdivision.
+const SCHEMES: [(&str, &str, Scheme); 8] = [
+    ("loop", "loop", Scheme::Loop(LoopWeights::Loop)),
+    ("butterfly", "butterfly", Scheme::Butterfly),
+    ("modified-butterfly", "modified butterfly", Scheme::ModifiedButterfly),
+    ("midpoint", "midpoint", Scheme::Midpoint),
+    ("doo-sabin", "doo-sabin", Scheme::DooSabin(DooSabinWeights::DooSabin)),
+    ("catmull-clark", "catmull-clark", Scheme::CatmullClark),
+    ("b-spline", "cubic b-spline", Scheme::BSpline),
+    ("four-point", "four-point", Scheme::FourPoint),
+];
+
+impl Scheme {
+    /// The scheme of a name on the command line, with its usual weights.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        SCHEMES.into_iter().find(|(known, ..)| *known == name).map(|(.., scheme)| scheme)
+    }
+
+    /// Its name in the reference files of subdivision.
+    pub(crate) fn reference_name(self) -> &'static str {
+        let is_same = |other: &Self| std::mem::discriminant(&self) == std::mem::discriminant(other);
+        SCHEMES.iter().find(|(.., scheme)| is_same(scheme)).map_or("", |(_, name, _)| name)
+    }
+}
+
 /// Connectivity of one level.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Connectivity {

@@ -43,30 +43,21 @@ pub(crate) struct Paint {
 }
 
 impl Coloring {
-    /// Every way, the default first.
-    pub const ALL: [Self; 8] = [
-        Self::Grain,
-        Self::Diameter,
-        Self::Neighbors,
-        Self::Phase,
-        Self::IpfX,
-        Self::IpfY,
-        Self::IpfZ,
-        Self::Disorientation,
+    /// Every way with its name on the command line, the default first.
+    pub const ALL: [(Self, &'static str); 8] = [
+        (Self::Grain, "grain"),
+        (Self::Diameter, "diameter"),
+        (Self::Neighbors, "neighbors"),
+        (Self::Phase, "phase"),
+        (Self::IpfX, "ipf-x"),
+        (Self::IpfY, "ipf-y"),
+        (Self::IpfZ, "ipf-z"),
+        (Self::Disorientation, "disorientation"),
     ];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Grain => "grain",
-            Self::Diameter => "diameter",
-            Self::Neighbors => "neighbors",
-            Self::Phase => "phase",
-            Self::IpfX => "ipf-x",
-            Self::IpfY => "ipf-y",
-            Self::IpfZ => "ipf-z",
-            Self::Disorientation => "disorientation",
-        }
+        Self::ALL.into_iter().find(|(one, _)| *one == self).map_or("", |(_, name)| name)
     }
 
     /// Whether it shows orientations, which grains may not have.

@@ -1,13 +1,12 @@
 //! Options about pictures and reports of meshes.
 
-use std::num::NonZeroU16;
 use std::path::PathBuf;
 
-use crate::{Error, Html, Output, Picture, Png, ScenePicture, Shading};
-use clap::{Args, ValueEnum};
+use crate::{Error, Html, Output, Png, ScenePicture, Shading};
+use clap::Args;
 
-use crate::cli::pictures::{parse_html, parse_png};
-use crate::spelling::whole_number;
+use crate::cli::pictures::{parse_html, parse_png, picture_size};
+use crate::spelling::{Named, one_of, whole_number};
 
 /// Pictures and pages of the result.
 #[derive(Debug, Args)]
@@ -22,8 +21,8 @@ pub struct ShownArguments {
     picture_size: Option<Vec<u16>>,
 
     /// Draw faces in one shade with their edges, and curves with their points (flat), or draw smooth surfaces (smooth)
-    #[arg(long, value_enum, default_value_t = ShadingName::Flat, requires = "picture")]
-    shading: ShadingName,
+    #[arg(long, value_parser = one_of(&SHADINGS), default_value = "flat", requires = "picture")]
+    shading: Shading,
 
     /// Colour the picture by an array of the result, with a key on the right
     ///
@@ -38,26 +37,15 @@ pub struct ShownArguments {
     report: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ShadingName {
-    Flat,
-    Smooth,
-}
+const SHADINGS: [Named<Shading>; 2] = [("flat", "", Shading::Flat), ("smooth", "", Shading::Smooth)];
 
 impl ShownArguments {
     /// The picture asked for, its path found writable.
     pub fn picture(&self) -> Result<Option<(ScenePicture, Output<Png>)>, Error> {
         let Some(path) = &self.picture else { return Ok(None) };
-        let at_least_one = |side: &u16| NonZeroU16::new(*side).unwrap_or(NonZeroU16::MIN);
-        let size = match self.picture_size.as_deref() {
-            Some([width, height]) => [width, height].map(at_least_one),
-            _ => Picture::SIZE,
-        };
-        let shading = match self.shading {
-            ShadingName::Flat => Shading::Flat,
-            ShadingName::Smooth => Shading::Smooth,
-        };
-        Ok(Some((ScenePicture { size, shading }, Output::check_as(path, Png)?)))
+        let picture =
+            ScenePicture { size: picture_size(self.picture_size.as_deref()), shading: self.shading };
+        Ok(Some((picture, Output::check_as(path, Png)?)))
     }
 
     /// The array that colours the picture.

@@ -7,7 +7,6 @@ use subzero::{LoopHierarchy, LoopWeights, TriangleMesh};
 
 use super::cage::{edges, triangles};
 use super::drawing::Asked;
-use super::surface::scheme;
 use crate::error::Error;
 use crate::memory::{available_memory, check_levels};
 use crate::mesh::file::MeshFile;
@@ -40,7 +39,7 @@ impl Subdivided {
     /// As of [`subdivide`].
     pub(super) fn new(mesh: &MeshFile, path: &Path, asked: &Asked) -> Result<Option<Self>, Error> {
         let steps = asked.level;
-        let Some(scheme) = scheme(&asked.scheme).filter(|_| steps > 0) else { return Ok(None) };
+        let Some(scheme) = Scheme::named(&asked.scheme).filter(|_| steps > 0) else { return Ok(None) };
         if let Scheme::Loop(weights) = scheme {
             return Self::by_loop(mesh, path, weights, asked).map(Some);
         }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
-use subzero::{Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights, MeshError};
+use subzero::{Crease, INFINITE_SHARPNESS, MeshError};
 
 use super::super::grains::Frame;
 use super::cage::{Cage, edges};
@@ -176,7 +176,7 @@ impl EditedMesh {
             ..Drawing::default()
         };
         if self.is_of_curves() {
-            if let Some(scheme) = scheme(&asked.scheme).filter(|_| asked.level > 0)
+            if let Some(scheme) = Scheme::named(&asked.scheme).filter(|_| asked.level > 0)
                 && let Some(level) = subdivide(&self.mesh, path, scheme, asked.level)?.pop()
             {
                 drawing.add_curves(&level.points, &level.mesh.faces());
@@ -202,19 +202,4 @@ fn shown(sharpness: f32) -> Option<f32> {
 
 fn check_sharpness(what: &'static str, index: usize, sharpness: f32) -> Result<(), MeshError> {
     if sharpness >= 0.0 { Ok(()) } else { Err(MeshError::Sharpness { what, index, sharpness }) }
-}
-
-/// A scheme by its name on the command line.
-pub(super) fn scheme(name: &str) -> Option<Scheme> {
-    Some(match name {
-        "loop" => Scheme::Loop(LoopWeights::default()),
-        "butterfly" => Scheme::Butterfly,
-        "modified-butterfly" => Scheme::ModifiedButterfly,
-        "midpoint" => Scheme::Midpoint,
-        "doo-sabin" => Scheme::DooSabin(DooSabinWeights::default()),
-        "catmull-clark" => Scheme::CatmullClark,
-        "b-spline" => Scheme::BSpline,
-        "four-point" => Scheme::FourPoint,
-        _ => return None,
-    })
 }
