@@ -45,9 +45,15 @@ pub(crate) const CRYSTAL_SYMMETRIES: &str = "CrystalSymmetries";
 /// The periods along the axes of a network that repeats; 0 along the others.
 pub(crate) const PERIODS: &str = "Periods";
 
+/// The entry with the settings of a run, as TOML.
+pub(crate) const CONFIG: &str = "Config";
+
+/// The entry with Bunge's angles of each grain, in degrees.
+pub(crate) const EULER_ANGLES: &str = "EulerAngles";
+
 /// What files say of themselves and of all grains beside who made them and how, and whether it is text.
 pub(crate) const FIELD_NAMES: [(&str, bool); 11] = [
-    ("Config", true),
+    (CONFIG, true),
     ("RandomSeed", false),
     (PHASE_NAMES, true),
     (CRYSTAL_SYMMETRIES, true),
@@ -56,7 +62,7 @@ pub(crate) const FIELD_NAMES: [(&str, bool); 11] = [
     (SEED_ID, false),
     (PARENT, false),
     (PHASE, false),
-    ("EulerAngles", false),
+    (EULER_ANGLES, false),
     ("Quaternion", false),
 ];
 

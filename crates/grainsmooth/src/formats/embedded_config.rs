@@ -10,6 +10,7 @@ use serde::Deserialize;
 
 use super::series::step_path;
 use crate::config::settings::{BEGIN, END, PREFIXES};
+use crate::names::CONFIG;
 use crate::vtk::field_text;
 
 /// Most formats have the text near their beginning: so many bytes are searched.
@@ -37,7 +38,7 @@ pub fn embedded_config(path: &Path) -> io::Result<Option<String>> {
         Some("vtp" | "vtu" | "vti") => {
             let bytes = ends(path)?;
             // Where numbers are encoded, texts are too.
-            let encoded = || extracted(field_text(&bytes, "Config")?.as_bytes());
+            let encoded = || extracted(field_text(&bytes, CONFIG)?.as_bytes());
             Ok(extracted(&bytes).or_else(encoded))
         }
         _ => Ok(extracted(&ends(path)?)),

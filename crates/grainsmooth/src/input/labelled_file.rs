@@ -11,8 +11,9 @@ use toml::{Table, Value};
 use voronoi::Dimension;
 
 use super::tess_network;
-use crate::mesh::file::vtk::labelled::{LabelledCells, Notes, read_legacy, read_xml};
+use crate::mesh::file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
 use crate::mesh::file::{MeshFileProblem, check_lengths};
+use crate::names::{CONFIG, CRYSTAL_SYMMETRIES, EULER_ANGLES, PERIODS, PHASE, PHASE_NAMES, SEED_ID, VOLUMES};
 use crate::{Config, Error, Names};
 
 /// A labelled surface (in the plane: lines) from a file.
@@ -122,18 +123,11 @@ impl LabelledFile {
             is_single,
             notes,
         } = cells;
-        let Notes {
-            config,
-            volumes,
-            euler_angles,
-            phases,
-            phase_names,
-            crystal_symmetries,
-            periods,
-            seed_ids,
-            ..
-        } = notes;
-        let settings: Option<Table> = config.and_then(|text| text.parse().ok());
+        let settings: Option<Table> = notes.text(CONFIG).and_then(|text| text.parse().ok());
+        let seed_ids = notes.ids(SEED_ID);
+        let periods = notes.numbers(PERIODS);
+        let unsigned = |ids: &[i32]| ids.iter().map(|id| id.cast_unsigned()).collect();
+        let listed = |name| notes.text(name).into_iter().flat_map(|names: &str| names.split(','));
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
             label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
@@ -212,22 +206,18 @@ impl LabelledFile {
             grain_counts: grain_counts.filter(|_| !is_periodic || originals.is_some()),
             originals: originals.filter(|_| is_periodic),
             label_array,
-            volumes: settings.as_ref().and_then(|settings| numbered(volumes?, first_label(settings))),
+            volumes: settings
+                .as_ref()
+                .and_then(|settings| numbered(notes.numbers(VOLUMES)?.to_vec(), first_label(settings))),
             orientations: first.and_then(|first| {
-                let (angles, []) = euler_angles.as_ref()?.as_chunks() else { return None };
+                let (angles, []) = notes.numbers(EULER_ANGLES)?.as_chunks() else { return None };
                 let orientations = angles.iter().map(|angles| Orientation::from_euler_degrees(*angles));
                 numbered(orientations.collect(), first)
             }),
-            phases: first
-                .and_then(|first| numbered(phases?.into_iter().map(i32::cast_unsigned).collect(), first)),
-            phase_names: phase_names.iter().flat_map(|names| names.split(',')).map(str::to_owned).collect(),
-            symmetries: crystal_symmetries
-                .iter()
-                .flat_map(|names| names.split(','))
-                .map(|name| name.parse().unwrap_or_default())
-                .collect(),
-            seed_ids: first
-                .and_then(|first| numbered(seed_ids?.into_iter().map(i32::cast_unsigned).collect(), first)),
+            phases: first.and_then(|first| numbered(unsigned(notes.ids(PHASE)?), first)),
+            phase_names: listed(PHASE_NAMES).map(str::to_owned).collect(),
+            symmetries: listed(CRYSTAL_SYMMETRIES).map(|name| name.parse().unwrap_or_default()).collect(),
+            seed_ids: first.and_then(|first| numbered(unsigned(seed_ids?), first)),
             periods: periods.and_then(|periods| Some(DVec3::from_array(periods.try_into().ok()?))),
             stretch,
             is_single,

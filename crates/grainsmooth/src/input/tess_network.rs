@@ -5,6 +5,8 @@ use voronoi::Dimension;
 
 use crate::mesh::file::vtk::labelled::{LabelledCells, Notes};
 use crate::mesh::file::{MeshFile, MeshFileProblem};
+use crate::names::{CRYSTAL_SYMMETRIES, EULER_ANGLES, PERIODS, PHASE, PHASE_NAMES, SEED_ID};
+use crate::vtk::{DataArray, FieldValue};
 use crate::{Oriented, Tess, TessCopy, TessPeriodicity, TessProblem, read_tess};
 
 /// The boundaries of all cells as they are, convex or not: of triangles between their corners, the middles of their edges and their own middles; in the plane of half edges.
@@ -126,24 +128,32 @@ fn notes(tess: &Tess) -> Notes {
         Dimension::Three => tess.polyhedra.len(),
     };
     let ids = if tess.ids.is_empty() { (0..).take(cell_count).collect() } else { tess.ids.clone() };
-    let phases = (!tess.groups.is_empty()).then_some(&tess.groups);
-    let names = phases.and_then(|groups| groups.iter().max()).map(|last| 1..=*last);
-    let joined = |words: Vec<String>| words.join(",");
-    let symmetry = tess.crystal_symmetry.map(|symmetry| symmetry.to_string());
-    let in_axes = |periodicity: &TessPeriodicity| {
-        let lengths = periodicity.lengths.to_array().into_iter().zip(periodicity.axes);
-        lengths.map(|(length, repeats)| if repeats { length } else { 0.0 }).collect()
+    let phase_count = tess.groups.iter().max();
+    let mut notes = Notes::default();
+    let ids_of = |name, ids: &[u32]| {
+        FieldValue::Data(DataArray::int32(name, ids.iter().map(|id| id.cast_signed()).collect()))
     };
-    Notes {
-        euler_angles: (!tess.orientations.is_empty())
-            .then(|| tess.orientations.iter().flat_map(|orientation| orientation.euler_degrees()).collect()),
-        phases: phases.map(|groups| groups.iter().map(|group| group.cast_signed()).collect()),
-        crystal_symmetries: symmetry
-            .map(|symmetry| vec![symmetry; names.clone().map_or(1, Iterator::count)])
-            .map(joined),
-        phase_names: names.map(|names| names.map(|number| number.to_string()).collect()).map(joined),
-        periods: tess.periodicity.as_ref().map(in_axes),
-        seed_ids: Some(ids.into_iter().map(u32::cast_signed).collect()),
-        ..Notes::default()
+    notes.note(SEED_ID, ids_of(SEED_ID, &ids));
+    if let Some(count) = phase_count {
+        notes.note(PHASE, ids_of(PHASE, &tess.groups));
+        let names: Vec<String> = (1..=*count).map(|number| number.to_string()).collect();
+        notes.note(PHASE_NAMES, FieldValue::Text(names.join(",")));
     }
+    if let Some(symmetry) = tess.crystal_symmetry {
+        let of_phases = vec![symmetry.to_string(); phase_count.map_or(1, |count| *count as usize)];
+        notes.note(CRYSTAL_SYMMETRIES, FieldValue::Text(of_phases.join(",")));
+    }
+    let mut note_numbers = |name, components, numbers| {
+        notes.note(name, FieldValue::Data(DataArray::float64(name, components, numbers)));
+    };
+    if !tess.orientations.is_empty() {
+        let angles = tess.orientations.iter().flat_map(|orientation| orientation.euler_degrees());
+        note_numbers(EULER_ANGLES, 3, angles.collect());
+    }
+    if let Some(periodicity) = &tess.periodicity {
+        let lengths = periodicity.lengths.to_array().into_iter().zip(periodicity.axes);
+        let periods = lengths.map(|(length, repeats)| if repeats { length } else { 0.0 });
+        note_numbers(PERIODS, 1, periods.collect());
+    }
+    notes
 }

@@ -209,11 +209,6 @@ impl<'a> XmlFile<'a> {
         self.field_values(name, ScalarType::Float64)?.into_vec()
     }
 
-    /// The 32-bit whole numbers of an entry of the field data.
-    pub(crate) fn field_ids(&self, name: &str) -> Option<Vec<i32>> {
-        self.field_values(name, ScalarType::Int32)?.into_vec()
-    }
-
     /// The document with its arrays within its elements, as `vtkio` understands them; or what is damaged.
     pub(crate) fn inlined(&self) -> Result<Vec<u8>, String> {
         let mut writer = Writer::new(Vec::new());

@@ -39,7 +39,7 @@ pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
         let mesh = xml_parts::points_and_faces(bytes).and_then(read)?;
         Ok::<_, MeshFileProblem>(MeshFile { left_behind: xml_parts::array_names(bytes), ..mesh })
     })?;
-    Ok(mesh.with_remarks(Notes::entries_of_xml(bytes)))
+    Ok(mesh.with_remarks(Notes::of_xml(bytes)))
 }
 
 fn problem(error: impl ToString) -> MeshFileProblem {

@@ -33,9 +33,7 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
         match kind {
             "string" => {
                 for _ in 0..count {
-                    let text = reader.text()?;
-                    notes.note_text(name, text.clone());
-                    notes.note(name, FieldValue::Text(text));
+                    notes.note(name, FieldValue::Text(reader.text()?));
                 }
             }
             // A .vtu of this program has its texts as bytes, and what VTK makes of it too.
@@ -45,7 +43,6 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
                 } else {
                     (0..count).map(|_| reader.number()).collect::<Option<_>>()?
                 };
-                notes.note_text(name, String::from_utf8_lossy(&bytes).into_owned());
                 let is_text = FIELD_NAMES.iter().any(|(known, is_text)| known == &name && *is_text);
                 notes.note(
                     name,
@@ -56,9 +53,7 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
                 );
             }
             "double" => {
-                let numbers = reader.numbers(count)?;
-                notes.note_numbers(name, numbers.clone());
-                notes.note(name, data(DataNumbers::Float64(numbers)));
+                notes.note(name, data(DataNumbers::Float64(reader.numbers(count)?)));
             }
             "int" | "vtktypeint32" => {
                 let numbers: Option<Vec<i32>> = match reader.is_binary {
@@ -68,9 +63,7 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
                     }
                     false => (0..count).map(|_| reader.number()).collect(),
                 };
-                let numbers = numbers?;
-                notes.note_ids(name, &numbers);
-                notes.note(name, data(DataNumbers::Int32(numbers)));
+                notes.note(name, data(DataNumbers::Int32(numbers?)));
             }
             "vtktypeuint64" if count == 1 => {
                 let number = match reader.is_binary {

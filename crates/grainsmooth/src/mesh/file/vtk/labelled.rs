@@ -6,11 +6,8 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
-use crate::names::{
-    BOUNDARY_ID, CRYSTAL_SYMMETRIES, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PERIODS, PHASE,
-    PHASE_NAMES, SEED_ID, VOLUMES,
-};
-use crate::vtk::{FieldEntry, FieldValue, XmlFile, field_entry};
+use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS};
+use crate::vtk::{DataArray, DataNumbers, FieldEntry, FieldValue, XmlFile, field_entry};
 
 const NODE_TYPES: &str = "NodeTypes";
 
@@ -18,29 +15,9 @@ const PERIODIC_ORIGINALS: &str = "PeriodicOriginal";
 
 const POINT_ARRAYS: [&str; 3] = [NODE_TYPES, NUMBER_OF_GRAINS, PERIODIC_ORIGINALS];
 
-const CONFIG: &str = "Config";
-
-const EULER_ANGLES: &str = "EulerAngles";
-
 /// What the field data of a file of this program say, also after another has read and written it.
 #[derive(Debug, Default)]
 pub(crate) struct Notes {
-    /// The settings that made the file, as TOML.
-    pub(crate) config: Option<String>,
-    /// The volume of each grain, in the order of their numbers.
-    pub(crate) volumes: Option<Vec<f64>>,
-    /// Bunge's angles of each grain in degrees, one after the other.
-    pub(crate) euler_angles: Option<Vec<f64>>,
-    /// The number of each grain's phase.
-    pub(crate) phases: Option<Vec<i32>>,
-    /// The names of the phases, with commas between.
-    pub(crate) phase_names: Option<String>,
-    /// The symmetries of their crystals, in the same way.
-    pub(crate) crystal_symmetries: Option<String>,
-    /// The periods along the three axes, 0 where nothing repeats.
-    pub(crate) periods: Option<Vec<f64>>,
-    /// The number of each grain's seed, or its label in a map.
-    pub(crate) seed_ids: Option<Vec<i32>>,
     /// All entries whose names this program knows.
     pub(crate) entries: Vec<FieldEntry>,
     /// The names of the others.
@@ -48,42 +25,16 @@ pub(crate) struct Notes {
 }
 
 impl Notes {
-    pub(super) fn note_text(&mut self, name: &str, text: String) {
-        match name {
-            CONFIG => self.config = Some(text),
-            PHASE_NAMES => self.phase_names = Some(text),
-            CRYSTAL_SYMMETRIES => self.crystal_symmetries = Some(text),
-            _ => {}
-        }
-    }
-
-    pub(super) fn note_numbers(&mut self, name: &str, numbers: Vec<f64>) {
-        match name {
-            VOLUMES => self.volumes = Some(numbers),
-            EULER_ANGLES => self.euler_angles = Some(numbers),
-            PERIODS => self.periods = Some(numbers),
-            _ => {}
-        }
-    }
-
-    pub(super) fn note_ids(&mut self, name: &str, ids: &[i32]) {
-        match name {
-            SEED_ID => self.seed_ids = Some(ids.to_vec()),
-            PHASE => self.phases = Some(ids.to_vec()),
-            _ => {}
-        }
-    }
-
     /// Keeps an entry as it is, where its name is known.
-    pub(super) fn note(&mut self, name: &str, value: FieldValue) {
+    pub(crate) fn note(&mut self, name: &str, value: FieldValue) {
         match FIELD_NAMES.iter().find(|(known, _)| *known == name) {
             Some((name, _)) => self.entries.push(FieldEntry { name, value }),
             None => self.unknown.push(name.to_owned()),
         }
     }
 
-    /// All entries of a file, without those that are looked at.
-    pub(super) fn entries_of_xml(bytes: &[u8]) -> Self {
+    /// All entries of a .vtp or .vtu file.
+    pub(super) fn of_xml(bytes: &[u8]) -> Self {
         let mut notes = Self::default();
         let Some(file) = XmlFile::of(bytes) else { return notes };
         for name in file.arrays("FieldData").filter_map(|array| array.attribute("Name")) {
@@ -96,18 +47,31 @@ impl Notes {
         notes
     }
 
-    fn of_xml(bytes: &[u8]) -> Self {
-        let Some(file) = XmlFile::of(bytes) else { return Self::default() };
-        Self {
-            config: file.field_text(CONFIG),
-            volumes: file.field_numbers(VOLUMES),
-            euler_angles: file.field_numbers(EULER_ANGLES),
-            phases: file.field_ids(PHASE),
-            phase_names: file.field_text(PHASE_NAMES),
-            crystal_symmetries: file.field_text(CRYSTAL_SYMMETRIES),
-            periods: file.field_numbers(PERIODS),
-            seed_ids: file.field_ids(SEED_ID),
-            ..Self::default()
+    fn value(&self, name: &str) -> Option<&FieldValue> {
+        self.entries.iter().find(|entry| entry.name == name).map(|entry| &entry.value)
+    }
+
+    /// A text.
+    pub(crate) fn text(&self, name: &str) -> Option<&str> {
+        match self.value(name)? {
+            FieldValue::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Floating point numbers, one tuple after the other.
+    pub(crate) fn numbers(&self, name: &str) -> Option<&[f64]> {
+        match self.value(name)? {
+            FieldValue::Data(DataArray { numbers: DataNumbers::Float64(numbers), .. }) => Some(numbers),
+            _ => None,
+        }
+    }
+
+    /// Whole numbers.
+    pub(crate) fn ids(&self, name: &str) -> Option<&[i32]> {
+        match self.value(name)? {
+            FieldValue::Data(DataArray { numbers: DataNumbers::Int32(ids), .. }) => Some(ids),
+            _ => None,
         }
     }
 }
