@@ -124,9 +124,7 @@ impl CheckReport {
             element,
             volume: volumes.iter().sum(),
             volume_error: expected.domain_volume.map(|_| certificate.total_volume_error),
-            dihedral: certificate
-                .angles
-                .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),
+            dihedral: certificate.angles.map(Spread::from),
             triangle_angles: certificate.triangles.map(TriangleAngles::from),
             statistics: statistics(file, &surface, certificate),
             sizes: file.settings.as_ref().and_then(|settings| sizes::sizes(settings, &volumes, dimension)),

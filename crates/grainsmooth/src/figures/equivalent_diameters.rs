@@ -5,6 +5,8 @@ use std::fmt;
 use serde::Serialize;
 use voronoi::Dimension;
 
+use super::spread::Spread;
+
 /// The equivalent diameters of all grains: of the balls of the same volumes, (6V/pi)^(1/3); in the plane of the discs of the
 /// same areas, 2 sqrt(A/pi). In the unit of the box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -20,10 +22,8 @@ pub struct EquivalentDiameters {
 impl EquivalentDiameters {
     /// Mean and spread of the diameters of some grains, of which there is at least one.
     pub fn new(dimension: Dimension, diameters: &[f64]) -> Self {
-        let count = diameters.len() as f64;
-        let mean = diameters.iter().sum::<f64>() / count;
-        let variance = diameters.iter().map(|diameter| (diameter - mean).powi(2)).sum::<f64>() / count;
-        Self { dimension, mean, standard_deviation: variance.sqrt() }
+        let Spread { mean, standard_deviation } = Spread::of(diameters).expect("there are grains");
+        Self { dimension, mean, standard_deviation }
     }
 }
 

@@ -173,6 +173,8 @@ impl SampleReport {
         let shown = if whole.is_empty() { sample.grains.iter().collect() } else { whole };
         let axis_ratio = axis_ratio(&shown, sample.dimension);
         let equivalent_diameter = EquivalentDiameters::new(sample.dimension, &diameters);
+        let roundnesses: Vec<f64> = shown.iter().filter_map(|grain| grain.sphericity).collect();
+        let faces: Vec<f64> = shown.iter().filter_map(|grain| Some(grain.faces? as f64)).collect();
         let texture = measured_texture(sample, symmetry);
         // Of two the nearer.
         let nearer = if by_volume.cdf_distance < by_number.cdf_distance { &by_volume } else { &by_number };
@@ -215,9 +217,8 @@ impl SampleReport {
             equivalent_diameter,
             lognormal_by_number: by_number,
             lognormal_by_volume: by_volume,
-            sphericity: spread(shown.iter().filter_map(|grain| grain.sphericity)),
-            #[expect(clippy::cast_precision_loss, reason = "grains have few faces")]
-            faces: spread(shown.iter().filter_map(|grain| grain.faces.map(|count| count as f64))),
+            sphericity: Spread::of(&roundnesses),
+            faces: Spread::of(&faces),
             axis_ratio: axis_ratio.map(|ratio| ratio.to_array()),
             texture,
             phases,
@@ -263,15 +264,6 @@ impl MeasuredSample {
         let table = Table { columns, rows: self.grains.iter().map(row).collect() };
         output.write(|out: &mut dyn Write| -> io::Result<()> { table.write_csv(out) })
     }
-}
-
-/// Mean and standard deviation; nothing of nothing.
-fn spread(values: impl Iterator<Item = f64>) -> Option<Spread> {
-    let values: Vec<f64> = values.collect();
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
-    (!values.is_empty()).then_some(Spread { mean, standard_deviation: variance.sqrt() })
 }
 
 /// How long grains are along the axes, each grain counting alike, whatever its size.

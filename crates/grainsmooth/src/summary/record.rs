@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use polycrystal::{AngleStatistics, Boundary, HerringResidual};
+use polycrystal::{Boundary, HerringResidual};
 use serde::Serialize;
 
+use crate::figures::spread::Spread;
 use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, CellFit, ComponentShare, CurvedEdges, Divided, ElementsReached, EquivalentDiameters,
@@ -71,8 +72,8 @@ pub struct SummaryRecord {
     /// Of elements of second order on the smooth surface.
     curved_edges: Option<CurvedEdges>,
     /// In degrees.
-    angles_before: Option<Angles>,
-    angles_after: Option<Angles>,
+    angles_before: Option<Spread>,
+    angles_after: Option<Spread>,
     /// The same unit; none in the plane.
     triangle_angles: Option<TriangleAngles>,
     largest_relative_volume_error: f64,
@@ -148,12 +149,6 @@ struct Residual {
     largest: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct Angles {
-    mean: f64,
-    standard_deviation: f64,
-}
-
 /// What became of a texture, if grains have orientations.
 fn texture_record(polycrystal: &Polycrystal, number: usize) -> Option<TextureRecord> {
     let texture = polycrystal.grains().texture.as_ref()?;
@@ -188,10 +183,6 @@ impl SummaryRecord {
         let junctions = network.junction_counts();
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let twice = count(|boundary| boundary.twin.is_some()) / 2;
-        let angles = |statistics: AngleStatistics| Angles {
-            mean: statistics.mean,
-            standard_deviation: statistics.standard_deviation,
-        };
         let seconds = polycrystal.times.iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -258,8 +249,8 @@ impl SummaryRecord {
             element_size: polycrystal.elements,
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
             curved_edges: polycrystal.volume_mesh.as_ref().and_then(|mesh| mesh.curved),
-            angles_before: synthesis.and_then(|made| made.angles_before).map(angles),
-            angles_after: polycrystal.validation.angles.map(angles),
+            angles_before: synthesis.and_then(|made| made.angles_before).map(Spread::from),
+            angles_after: polycrystal.validation.angles.map(Spread::from),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
             largest_relative_volume_error: polycrystal.validation.largest_volume_error,
             seconds: seconds.collect(),

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use glam::DVec3;
-use serde::ser::{Serialize, SerializeSeq, SerializeStruct, Serializer};
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 use voronoi::{CellId, Dimension, Side, SingleCell};
 
-use super::table::{RowAsMap, Value, push_csv_line, write_csv};
+use super::table::{Row, Value, push_csv_line, write_csv};
 use crate::{Config, Error, GrainAttributes, ListedCells, Output, StagedFiles, Tessellated};
 
 /// A format of tables.
@@ -105,12 +105,7 @@ impl Serialize for CellTable<'_> {
         struct Rows<'a>(&'a CellTable<'a>);
         impl Serialize for Rows<'_> {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let mut rows = serializer.serialize_seq(Some(self.0.count as usize))?;
-                for index in 0..self.0.count as usize {
-                    let (names, values): (Vec<_>, Vec<_>) = self.0.record(index).into_iter().unzip();
-                    rows.serialize_element(&RowAsMap(&names, &values))?;
-                }
-                rows.end()
+                serializer.collect_seq((0..self.0.count as usize).map(|index| Row(self.0.record(index))))
             }
         }
         let mut table = serializer.serialize_struct("CellTable", 2)?;

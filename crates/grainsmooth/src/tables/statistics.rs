@@ -11,6 +11,7 @@ use polycrystal::{GrainId, Measures, Side};
 use serde::Serialize;
 use voronoi::Dimension;
 
+use crate::figures::spread::Spread;
 use crate::formats::surface::label;
 use crate::names::{MOBILITY, PARENT, PHASE, SPREAD, TENSION, VOXEL_COUNT};
 use crate::tables::table::{Table, Value};
@@ -72,8 +73,8 @@ pub struct NetworkStatistics {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct Distribution {
     count: usize,
-    mean: f64,
-    standard_deviation: f64,
+    #[serde(flatten)]
+    spread: Spread,
     minimum: f64,
     maximum: f64,
 }
@@ -186,8 +187,8 @@ fn is_inside(sides: &[Side]) -> bool {
 fn distributions<const N: usize>(
     quantities: [(&'static str, Vec<f64>); N],
 ) -> BTreeMap<&'static str, Distribution> {
-    let quantities = quantities.into_iter().filter(|(_, values)| !values.is_empty());
-    quantities.map(|(name, values)| (name, Distribution::of(&values))).collect()
+    let of = |(name, values): (_, Vec<f64>)| Some((name, Distribution::of(&values)?));
+    quantities.into_iter().filter_map(of).collect()
 }
 
 /// Adds dihedral angles, whose mean and spread are known; `add_range` widens a range by all angles and counts them.
@@ -200,24 +201,19 @@ fn add_angles(
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let count = add_range(&mut range);
     let [minimum, maximum] = range;
-    let polycrystal::AngleStatistics { mean, standard_deviation } = angles;
-    let distribution = Distribution { count, mean, standard_deviation, minimum, maximum };
+    let distribution = Distribution { count, spread: angles.into(), minimum, maximum };
     distributions.insert("dihedral_angle", distribution);
 }
 
 impl Distribution {
-    /// That of some values; the standard deviation is that of these, not an estimate for more.
-    fn of(values: &[f64]) -> Self {
-        let count = values.len();
-        let mean = values.iter().sum::<f64>() / count as f64;
-        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64;
-        Self {
-            count,
-            mean,
-            standard_deviation: variance.sqrt(),
+    /// That of some values; nothing of nothing.
+    fn of(values: &[f64]) -> Option<Self> {
+        Some(Self {
+            count: values.len(),
+            spread: Spread::of(values)?,
             minimum: values.iter().copied().fold(f64::INFINITY, f64::min),
             maximum: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
+        })
     }
 }
 

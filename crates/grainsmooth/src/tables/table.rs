@@ -147,15 +147,16 @@ impl Value {
 
 impl Serialize for Table {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.rows.iter().map(|row| RowAsMap(&self.columns, row)))
+        let row = |row: &Vec<Value>| Row(self.columns.iter().copied().zip(row.iter().cloned()).collect());
+        serializer.collect_seq(self.rows.iter().map(row))
     }
 }
 
 /// A row as an object of JSON.
-pub(crate) struct RowAsMap<'a>(pub(crate) &'a [&'static str], pub(crate) &'a [Value]);
+pub(crate) struct Row(pub(crate) Vec<(&'static str, Value)>);
 
-impl Serialize for RowAsMap<'_> {
+impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().zip(self.1))
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
 }
