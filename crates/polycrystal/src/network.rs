@@ -82,12 +82,12 @@ impl Network {
     /// # Errors
     /// [`NetworkError::BadTension`] where one is negative or not finite.
     pub fn with_tensions(mut self, tension: impl Fn(&Boundary) -> f64) -> Result<Self, NetworkError> {
-        self.tensions.clear();
-        for boundary in &self.boundaries {
-            let boundary = boundary.between_grains(&self.boundaries);
-            self.tensions.push(checked_tension(&boundary, tension(&boundary))?);
-        }
+        self.tensions = self.of_boundaries(|boundary| checked_tension(boundary, tension(boundary)))?;
         Ok(self)
+    }
+
+    fn of_boundaries<T, E>(&self, value: impl Fn(&Boundary) -> Result<T, E>) -> Result<Vec<T>, E> {
+        self.boundaries.iter().map(|boundary| value(&boundary.between_grains(&self.boundaries))).collect()
     }
 
     /// The sides of all boundaries, by number.
@@ -109,11 +109,7 @@ impl Network {
     /// # Errors
     /// [`NetworkError::BadMobility`].
     pub fn with_mobilities(mut self, mobility: impl Fn(&Boundary) -> f64) -> Result<Self, NetworkError> {
-        self.mobilities.clear();
-        for boundary in &self.boundaries {
-            let boundary = boundary.between_grains(&self.boundaries);
-            self.mobilities.push(checked_mobility(&boundary, mobility(&boundary))?);
-        }
+        self.mobilities = self.of_boundaries(|boundary| checked_mobility(boundary, mobility(boundary)))?;
         Ok(self)
     }
 

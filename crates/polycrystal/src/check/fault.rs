@@ -230,11 +230,7 @@ impl Fault {
             | Self::Crossing { elements, .. } => (Vec::new(), elements.to_vec()),
             Self::Open { place, .. } | Self::Pinched { place, .. } => (place.points(), Vec::new()),
             Self::Winding { place, elements } => (place.points(), elements.clone()),
-            Self::NoVolume { .. }
-            | Self::MissingGrain { .. }
-            | Self::UnknownGrain { .. }
-            | Self::WrongVolume { .. }
-            | Self::WrongTotal { .. } => (Vec::new(), Vec::new()),
+            _ => (Vec::new(), Vec::new()),
         }
     }
 

@@ -325,24 +325,7 @@ impl NetworkError {
             Self::GivenUp { last, .. } => last.grains(),
             Self::Folded { grains, .. } => Some(grains.clone()),
             Self::CutCrosses { .. } => Some(Vec::new()),
-            Self::TooLarge { .. }
-            | Self::Mesh(_)
-            | Self::PeriodicSurface
-            | Self::NotOnWall { .. }
-            | Self::MissingGrain { .. }
-            | Self::NoGrain
-            | Self::VoxelsTouch { .. }
-            | Self::ShortPeriod { .. }
-            | Self::EndlessGrain { .. }
-            | Self::PeriodicPores
-            | Self::BadEdgeLength(_)
-            | Self::BadElementSize(_)
-            | Self::RemeshPlane
-            | Self::NoCopyOnWall { .. }
-            | Self::NoPeriodicCopy { .. }
-            | Self::BadRelaxationTime(_)
-            | Self::BadMobility { .. }
-            | Self::BadTension { .. } => None,
+            _ => None,
         }
     }
 
