@@ -119,14 +119,17 @@ impl Config {
         if let Some(shapes) = &self.grain_shapes {
             shapes.check(self.dimension).map_err(ConfigError::ShapeLengths)?;
         }
-        if self.min_diameter > 0.0 && !self.phases.is_empty() {
-            let (what, remedy) =
-                ("the shares of the phases", "cut small grains off with from=, or leave it out");
-            return Err(ConfigError::MergedSizes { what, remedy });
-        }
-        if self.min_diameter > 0.0 && is_sized {
-            let (what, remedy) =
-                ("sizes that are given", "cut small ones off with from=, or give --seeding random");
+        let sized = [
+            (
+                !self.phases.is_empty(),
+                "the shares of the phases",
+                "cut small grains off with from=, or leave it out",
+            ),
+            (is_sized, "sizes that are given", "cut small ones off with from=, or give --seeding random"),
+        ];
+        if let Some((_, what, remedy)) =
+            sized.into_iter().find(|(is_given, ..)| *is_given && self.min_diameter > 0.0)
+        {
             return Err(ConfigError::MergedSizes { what, remedy });
         }
         if is_flat && self.has_grains_of_several_cells() {

@@ -55,12 +55,10 @@ impl Polycrystal {
             match (block, &space) {
                 ("boundaries", Some((surface, _))) => self.write_boundaries(surface, measured, out)?,
                 ("grains", Some((surface, _))) => self.write_grain_block(surface, measured, out)?,
-                ("triple_lines", Some((surface, junctions))) => {
-                    self.write_triple_lines(surface, junctions, measured, out)?;
+                ("triple_lines", Some((_, junctions))) => {
+                    self.write_triple_lines(junctions, measured, out)?;
                 }
-                (_, Some((surface, junctions))) => {
-                    self.write_quadruple_points(surface, junctions, measured, out)?
-                }
+                (_, Some((_, junctions))) => self.write_quadruple_points(junctions, measured, out)?,
                 ("boundaries", None) => self.write_plane_boundaries(measured, out)?,
                 ("grains", None) => self.write_plane_grains(out)?,
                 ("triple_lines", None) => self.write_plane_junctions(3, out)?,
@@ -197,7 +195,6 @@ impl Polycrystal {
     /// The lines where at least three sides meet, as polylines.
     fn write_triple_lines(
         &self,
-        surface: &Surface<'_>,
         junctions: &Junctions,
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
@@ -207,48 +204,58 @@ impl Polycrystal {
         let mut ids: Vec<u32> = lines.iter().flat_map(|(line, _)| line.points.iter().copied()).collect();
         ids.sort_unstable();
         ids.dedup();
-        let points: Vec<DVec3> = ids.iter().map(|&id| surface.points[id as usize]).collect();
         let renumbered = |id: &u32| point_id(ids.partition_point(|other| other < id));
         let cells: Vec<Vec<u32>> =
             lines.iter().map(|(line, _)| line.points.iter().map(renumbered).collect()).collect();
-        let sides = self.side_table(lines.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let polylines = lines.iter().map(|(line, _)| &line.points[..]);
         let of_lines = measured.map_or_else(Vec::new, |all| all.of_lines(polylines));
-        let grain_counts = self.grain_counts(&ids);
-        let mut data = PolyData {
+        let sides = lines.iter().map(|(_, sides)| sides);
+        let junctions = (Cells::Polylines(&cells), sides, self.most_sides(junctions));
+        self.write_junctions(&ids, junctions, &of_lines, out)
+    }
+
+    /// Lines or points where sides meet, with these sides and the most that meet anywhere. `ids` are the points.
+    pub(super) fn write_junctions<'a>(
+        &self,
+        ids: &[u32],
+        (cells, sides, components): (Cells<'_>, impl Iterator<Item = &'a Vec<Side>>, usize),
+        measured: &[DataArray],
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        let points: Vec<DVec3> = ids.iter().map(|&id| self.points[id as usize]).collect();
+        let grain_counts = self.grain_counts(ids);
+        // All blocks of a file have as many components, of which ParaView warns where they differ.
+        let names = self.file().names;
+        let row = |sides: &Vec<Side>| {
+            let numbers = sides.iter().map(|side| names.side_number(*side));
+            numbers.chain(std::iter::repeat(NO_SIDE)).take(components).collect::<Vec<i32>>()
+        };
+        let sides: Vec<i32> = sides.flat_map(row).collect();
+        let mut cell_arrays = vec![Array { name: "Sides", values: Values::tuples(components, &sides) }];
+        cell_arrays.extend(measured.iter().map(DataArray::array));
+        let data = PolyData {
             points: &points,
-            cells: Cells::Polylines(&cells),
+            cells,
             point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
+            cell_arrays,
             field: self.field(),
         };
-        data.cell_arrays.extend(of_lines.iter().map(DataArray::array));
         write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The points where at least four sides meet.
     fn write_quadruple_points(
         &self,
-        surface: &Surface<'_>,
         junctions: &Junctions,
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let points = self.quadruple_points(junctions);
-        let sides = self.side_table(points.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
-        let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
         let of_points = measured.map_or_else(Vec::new, |all| all.of_quadruple_points(&ids));
-        let grain_counts = self.grain_counts(&ids);
-        let mut data = PolyData {
-            points: &points,
-            cells: Cells::Vertices(points.len()),
-            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
-            field: self.field(),
-        };
-        data.cell_arrays.extend(of_points.iter().map(DataArray::array));
-        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
+        let sides = points.iter().map(|(_, sides)| sides);
+        let junctions = (Cells::Vertices(ids.len()), sides, self.most_sides(junctions));
+        self.write_junctions(&ids, junctions, &of_points, out)
     }
 
     /// The sides that meet in a line.
@@ -259,15 +266,10 @@ impl Polycrystal {
 
     /// The points where at least four sides meet, and these.
     fn quadruple_points(&self, junctions: &Junctions) -> Vec<(u32, Vec<Side>)> {
-        let mut at: Vec<(u32, Side)> = Vec::new();
-        for line in &junctions.lines {
-            let ends = [line.points[0], line.points[line.points.len() - 1]];
-            at.extend(self.sides_around(line).into_iter().flat_map(|side| ends.map(|end| (end, side))));
-        }
-        at.sort_unstable();
-        at.dedup();
-        let points = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= 4);
-        points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect()
+        let lines = junctions.lines.iter().map(|line| (&line.points[..], self.sides_around(line)));
+        let mut points = sides_at_ends(lines);
+        points.retain(|(_, sides)| sides.len() >= 4);
+        points
     }
 
     /// What is measured, wound as the files want it, if they are to have it.
@@ -295,33 +297,21 @@ impl Polycrystal {
         let level = self.network.finest();
         points.iter().map(|point| level.grain_count(*point as usize)).collect()
     }
-
-    /// The numbers of the sides that meet in each of some places. All blocks of a file have as many components, of which
-    /// ParaView warns where they differ.
-    pub(super) fn side_table<'a>(
-        &self,
-        places: impl Iterator<Item = &'a Vec<Side>>,
-        components: usize,
-    ) -> SideTable {
-        let names = self.file().names;
-        let row = |sides: &Vec<Side>| {
-            let numbers = sides.iter().map(|side| names.side_number(*side));
-            numbers.chain(std::iter::repeat(NO_SIDE)).take(components).collect::<Vec<i32>>()
-        };
-        SideTable { components, numbers: places.flat_map(row).collect() }
-    }
 }
 
-/// As many sides for each place as meet anywhere.
-pub(super) struct SideTable {
-    components: usize,
-    numbers: Vec<i32>,
-}
-
-impl SideTable {
-    pub(super) fn values(&self) -> Values<'_> {
-        Values::tuples(self.components, &self.numbers)
+/// The points where lines end, each with the sides that meet in these lines.
+pub(super) fn sides_at_ends<'a>(
+    lines: impl Iterator<Item = (&'a [u32], Vec<Side>)>,
+) -> Vec<(u32, Vec<Side>)> {
+    let mut at: Vec<(u32, Side)> = Vec::new();
+    for (line, sides) in lines {
+        let ends = [line[0], line[line.len() - 1]];
+        at.extend(sides.into_iter().flat_map(|side| ends.map(|end| (end, side))));
     }
+    at.sort_unstable();
+    at.dedup();
+    let points = at.chunk_by(|a, b| a.0 == b.0);
+    points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect()
 }
 
 /// Each side once: grains by number, then the exterior.

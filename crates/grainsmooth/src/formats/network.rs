@@ -12,7 +12,9 @@ use voronoi::{Dimension, PeriodicPair};
 use super::measured_arrays::MeasuredArrays;
 use super::surface::Surface;
 use crate::mesh::normal::unit_normal;
-use crate::names::{CRYSTAL_SYMMETRIES, MOBILITY, NUMBER_OF_GRAINS, PERIODS, PHASE_NAMES, SEED_ID, TENSION};
+use crate::names::{
+    CONFIG, CRYSTAL_SYMMETRIES, MOBILITY, NUMBER_OF_GRAINS, PERIODS, PHASE_NAMES, SEED_ID, TENSION,
+};
 use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;
 use crate::vtk::{Array, Cells, DataArray, FieldEntry, FieldValue, ItemTuples, PolyData, Values, VtkFormat};
@@ -219,7 +221,7 @@ impl Polycrystal {
             text("CommandLine", provenance.command_line().into_owned()),
         ];
         if let Provenance::Config(config) = provenance {
-            field.push(text("Config", config.to_toml()));
+            field.push(text(CONFIG, config.to_toml()));
             field.push(FieldEntry { name: "RandomSeed", value: FieldValue::Integer(config.random_seed) });
         }
         let grains = self.grains();

@@ -132,12 +132,7 @@ impl OutputFormat {
     pub(crate) fn bytes_of_voxel(self, config: &Config) -> u32 {
         match self.0.content {
             Content::Voxels(bytes) => bytes(config),
-            Content::Boundaries
-            | Content::BoundariesOrTetrahedra
-            | Content::Tetrahedra
-            | Content::Cells
-            | Content::Elements
-            | Content::Orientations => 0,
+            _ => 0,
         }
     }
 

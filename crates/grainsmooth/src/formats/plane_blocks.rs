@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use glam::{DVec2, DVec3};
 use polycrystal::{GrainId, Side};
 
-use super::blocks::point_id;
+use super::blocks::{point_id, sides_at_ends};
 use crate::Polycrystal;
 use crate::formats::measured_arrays::MeasuredArrays;
 use crate::formats::network::boundary_polylines;
@@ -120,36 +120,13 @@ impl Polycrystal {
 
     /// The points where at least so many sides meet: 3 for triple points, 4 for quadruple points.
     pub(super) fn write_plane_junctions(&self, fewest: usize, out: &mut dyn Write) -> io::Result<()> {
-        let mut at: Vec<(u32, Side)> = Vec::new();
-        for (line, boundary) in self.polylines() {
-            let ends = [line[0], line[line.len() - 1]];
-            at.extend(
-                self.network.boundaries()[boundary]
-                    .sides
-                    .into_iter()
-                    .flat_map(|side| ends.map(|end| (end, side))),
-            );
-        }
-        at.sort_unstable();
-        at.dedup();
-        let all: Vec<(u32, Vec<Side>)> = at
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect()))
-            .collect();
+        let (lines, boundaries) = (self.polylines(), self.network.boundaries());
+        let all = sides_at_ends(lines.iter().map(|(line, of)| (&line[..], boundaries[*of].sides.to_vec())));
         let junctions = || all.iter().filter(|(_, sides)| sides.len() >= fewest);
         let ids: Vec<u32> = junctions().map(|(point, _)| *point).collect();
-        let points: Vec<DVec3> = ids.iter().map(|id| self.points[*id as usize]).collect();
         let components = all.iter().map(|(_, sides)| sides.len()).max().unwrap_or(1);
-        let sides = self.side_table(junctions().map(|(_, sides)| sides), components);
-        let grain_counts = self.grain_counts(&ids);
-        let data = PolyData {
-            points: &points,
-            cells: Cells::Vertices(points.len()),
-            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::slice(&grain_counts) }],
-            cell_arrays: vec![Array { name: "Sides", values: sides.values() }],
-            field: self.field(),
-        };
-        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
+        let sides = junctions().map(|(_, sides)| sides);
+        self.write_junctions(&ids, (Cells::Vertices(ids.len()), sides, components), &[], out)
     }
 
     /// The boundaries' points, in order with the first side on the left, and their numbers.

@@ -100,33 +100,9 @@ pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<
 /// # Errors
 /// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
-    read(path, |content| {
-        let rows = Rows::new(content)?;
-        let places = match (rows.named(&["position"]), rows.named(&["factor"])) {
-            (Some(position), Some(factor)) => [position, factor],
-            _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
-            _ => return Err((rows.first_line, "name two columns position and factor".to_owned())),
-        };
-        let table = rows.numbers(places)?;
-        if table.is_empty() {
-            return Err((1, "holds no factors; give a position and a factor on each line".to_owned()));
-        }
-        for (row, [position, factor]) in table.iter().enumerate() {
-            let line = rows.rows[row].0;
-            if !(position.is_finite() && (1e-3..=1e3).contains(factor)) {
-                return Err((
-                    line,
-                    format!("the factor {factor} at {position} is not from 0.001 to 1000; correct it"),
-                ));
-            }
-            if row > 0 && *position <= table[row - 1][0] {
-                return Err((
-                    line,
-                    format!("the position {position} is not above the one before; list them in order"),
-                ));
-            }
-        }
-        Ok(table)
+    read_pairs(path, ["position", "factor"], "factors; give a position", |[position, factor]| {
+        (!(position.is_finite() && (1e-3..=1e3).contains(&factor)))
+            .then(|| format!("the factor {factor} at {position} is not from 0.001 to 1000; correct it"))
     })
 }
 
@@ -135,30 +111,44 @@ pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
 /// # Errors
 /// [`Error::Unreadable`]; [`Error::BadLine`].
 pub(crate) fn read_law_file(path: &Path, kind: LawKind) -> Result<Vec<[f64; 2]>, Error> {
+    let name = kind.name();
+    read_pairs(path, ["angle", name], "angles; give an angle", |[angle, value]| {
+        (!((0.0..=180.0).contains(&angle) && value.is_finite() && value >= 0.0)).then(|| {
+            format!(
+                "the {name} {value} at {angle} degrees is negative or no number, or the angle not from 0 to 180; correct it"
+            )
+        })
+    })
+}
+
+/// Reads two columns of these names, the first one rising. `wanted` is what an empty table lacks; `problem` tells what is wrong with a row.
+fn read_pairs(
+    path: &Path,
+    [first, second]: [&str; 2],
+    wanted: &str,
+    problem: impl Fn([f64; 2]) -> Option<String>,
+) -> Result<Vec<[f64; 2]>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
-        let places = match (rows.named(&["angle"]), rows.named(&[kind.name()])) {
-            (Some(angle), Some(value)) => [angle, value],
+        let places = match (rows.named(&[first]), rows.named(&[second])) {
+            (Some(first), Some(second)) => [first, second],
             _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
-            _ => return Err((rows.first_line, format!("name two columns angle and {}", kind.name()))),
+            _ => return Err((rows.first_line, format!("name two columns {first} and {second}"))),
         };
         let table = rows.numbers(places)?;
         if table.is_empty() {
-            return Err((1, format!("holds no angles; give an angle and a {} on each line", kind.name())));
+            return Err((1, format!("holds no {wanted} and a {second} on each line")));
         }
-        for (row, [angle, value]) in table.iter().enumerate() {
+        for (row, pair) in table.iter().enumerate() {
             let line = rows.rows[row].0;
-            if !((0.0..=180.0).contains(angle) && value.is_finite() && *value >= 0.0) {
-                let problem = format!(
-                    "the {} {value} at {angle} degrees is negative or no number, or the angle not from 0 to 180; correct it",
-                    kind.name()
-                );
+            if let Some(problem) = problem(*pair) {
                 return Err((line, problem));
             }
-            if row > 0 && *angle <= table[row - 1][0] {
+            let place = pair[0];
+            if row > 0 && place <= table[row - 1][0] {
                 return Err((
                     line,
-                    format!("the angle {angle} is not above the one before; list them in order"),
+                    format!("the {first} {place} is not above the one before; list them in order"),
                 ));
             }
         }

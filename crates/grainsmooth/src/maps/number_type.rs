@@ -62,35 +62,24 @@ impl NumberType {
         }
     }
 
-    /// The labels that some bytes hold; a last number that is cut off is left out.
+    /// The labels that some bytes hold; a last number that is cut off is left out. Labels have 32 bits, which floating point numbers hold.
     pub(super) fn labels(self, bytes: &[u8], order: ByteOrder) -> Result<Vec<i32>, MapProblem> {
-        match self {
-            Self::U8 => Ok(bytes.iter().map(|byte| i32::from(*byte)).collect()),
-            Self::I8 => Ok(bytes.iter().map(|byte| i32::from(byte.cast_signed())).collect()),
-            Self::U16 => Ok(numbers(bytes, order, u16::from_le_bytes).map(i32::from).collect()),
-            Self::I16 => Ok(numbers(bytes, order, i16::from_le_bytes).map(i32::from).collect()),
-            Self::I32 => Ok(numbers(bytes, order, i32::from_le_bytes).collect()),
-            Self::U32 => whole(numbers(bytes, order, u32::from_le_bytes), |label| f64::from(*label)),
-            Self::U64 => whole(numbers(bytes, order, u64::from_le_bytes), |label| *label as f64),
-            Self::I64 => whole(numbers(bytes, order, i64::from_le_bytes), |label| *label as f64),
-            Self::F32 => labels_of_floats(numbers(bytes, order, f32::from_le_bytes).map(f64::from)),
-            Self::F64 => labels_of_floats(numbers(bytes, order, f64::from_le_bytes)),
-        }
+        labels_of_floats(self.numbers(bytes, order))
     }
 
     /// The numbers that some bytes hold; a last one that is cut off is left out.
-    pub(super) fn floats(self, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
+    pub(super) fn numbers(self, bytes: &[u8], order: ByteOrder) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
-            Self::U8 => bytes.iter().map(|byte| f64::from(*byte)).collect(),
-            Self::I8 => bytes.iter().map(|byte| f64::from(byte.cast_signed())).collect(),
-            Self::U16 => numbers(bytes, order, u16::from_le_bytes).map(f64::from).collect(),
-            Self::I16 => numbers(bytes, order, i16::from_le_bytes).map(f64::from).collect(),
-            Self::U32 => numbers(bytes, order, u32::from_le_bytes).map(f64::from).collect(),
-            Self::I32 => numbers(bytes, order, i32::from_le_bytes).map(f64::from).collect(),
-            Self::U64 => numbers(bytes, order, u64::from_le_bytes).map(|number| number as f64).collect(),
-            Self::I64 => numbers(bytes, order, i64::from_le_bytes).map(|number| number as f64).collect(),
-            Self::F32 => numbers(bytes, order, f32::from_le_bytes).map(f64::from).collect(),
-            Self::F64 => numbers(bytes, order, f64::from_le_bytes).collect(),
+            Self::U8 => Box::new(bytes.iter().map(|byte| f64::from(*byte))),
+            Self::I8 => Box::new(bytes.iter().map(|byte| f64::from(byte.cast_signed()))),
+            Self::U16 => Box::new(numbers(bytes, order, u16::from_le_bytes).map(f64::from)),
+            Self::I16 => Box::new(numbers(bytes, order, i16::from_le_bytes).map(f64::from)),
+            Self::U32 => Box::new(numbers(bytes, order, u32::from_le_bytes).map(f64::from)),
+            Self::I32 => Box::new(numbers(bytes, order, i32::from_le_bytes).map(f64::from)),
+            Self::U64 => Box::new(numbers(bytes, order, u64::from_le_bytes).map(|number| number as f64)),
+            Self::I64 => Box::new(numbers(bytes, order, i64::from_le_bytes).map(|number| number as f64)),
+            Self::F32 => Box::new(numbers(bytes, order, f32::from_le_bytes).map(f64::from)),
+            Self::F64 => Box::new(numbers(bytes, order, f64::from_le_bytes)),
         }
     }
 }
@@ -122,17 +111,6 @@ fn numbers<const N: usize, T>(
         }
         number(bytes)
     })
-}
-
-fn whole<T>(numbers: impl Iterator<Item = T>, told: impl Fn(&T) -> f64) -> Result<Vec<i32>, MapProblem>
-where
-    i32: TryFrom<T>,
-    T: Copy,
-{
-    let label = |(voxel, number): (usize, T)| {
-        i32::try_from(number).map_err(|_| MapProblem::NotWhole { voxel, label: told(&number) })
-    };
-    numbers.enumerate().map(label).collect()
 }
 
 impl FromStr for NumberType {

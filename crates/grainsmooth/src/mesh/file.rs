@@ -116,23 +116,28 @@ impl MeshFile {
             if corners.len() < 3 {
                 return Err(subzero::MeshError::TooFewCorners { face, corners: corners.len() }.into());
             }
-            let vertex_count = self.points.len();
-            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertex_count) {
-                let (what, index) = ("face", face.index());
-                return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
-            }
+            self.check_vertices("face", face.index(), corners)?;
         }
         for (index, line) in self.lines.iter().enumerate() {
             if line.len() < 2 {
                 return Err(MeshFileProblem::ShortPolyline { line: index });
             }
-            let vertex_count = self.points.len();
-            if let Some(&vertex) = line.iter().find(|&&vertex| vertex as usize >= vertex_count) {
-                let what = "polyline";
-                return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
-            }
+            self.check_vertices("polyline", index, line)?;
         }
         Ok(())
+    }
+
+    fn check_vertices(
+        &self,
+        what: &'static str,
+        index: usize,
+        ids: &[u32],
+    ) -> Result<(), subzero::MeshError> {
+        let vertex_count = self.points.len();
+        match ids.iter().find(|&&vertex| vertex as usize >= vertex_count) {
+            Some(&vertex) => Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }),
+            None => Ok(()),
+        }
     }
 
     /// The faces, if all are triangles.

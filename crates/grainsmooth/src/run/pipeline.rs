@@ -137,30 +137,19 @@ pub fn smooth_watched(
         return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
     };
     let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
-    let Smoothed {
-        network,
-        points,
-        relaxed,
-        collapsed,
-        reconnected,
-        vanished,
-        flat_angles,
-        angles_before,
-        validation,
-    } = smoothed;
-    attempts.extend(relaxed.given_up.clone());
+    attempts.extend(smoothed.relaxed.given_up.clone());
+    let (network, points, validation) = (smoothed.network, smoothed.points, smoothed.validation);
     let topology = Topology::new(Some(&cells.face_counts(tessellation)), &network);
-    let config = config.clone();
     let synthesis = Synthesis {
-        config,
+        config: config.clone(),
         cells,
-        relaxed,
+        relaxed: smoothed.relaxed,
         regularization,
-        collapsed,
-        reconnected,
-        vanished,
-        flat_angles,
-        angles_before,
+        collapsed: smoothed.collapsed,
+        reconnected: smoothed.reconnected,
+        vanished: smoothed.vanished,
+        flat_angles: smoothed.flat_angles,
+        angles_before: smoothed.angles_before,
     };
     let origin = Origin::Synthetic(Box::new(synthesis));
     let mut polycrystal =

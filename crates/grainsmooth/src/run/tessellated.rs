@@ -347,10 +347,7 @@ fn sized_cells(
     let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
     let diagram = PowerDiagram::with_volumes(domain, &positions, volumes)
         .and_then(|diagram| diagram.lloyd(config.centroid_steps() as usize));
-    diagram.map_err(|error| match error {
-        VolumesError::Voronoi(error) => located(error, config, seeds),
-        error => error.into(),
-    })
+    diagram.map_err(|error| of_volumes(error, config, seeds))
 }
 
 /// Grains of given volumes and shapes, after the centroid steps.
@@ -364,10 +361,7 @@ fn shaped_grains(
     let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
     let diagram = GrainDiagram::with_shapes(domain, &positions, volumes, shapes)
         .and_then(|diagram| diagram.lloyd(config.centroid_steps() as usize));
-    diagram.map_err(|error| match error {
-        VolumesError::Voronoi(error) => located(error, config, seeds),
-        error => error.into(),
-    })
+    diagram.map_err(|error| of_volumes(error, config, seeds))
 }
 
 /// The seeds, and the volumes that their cells are to have where these are given, if `check` finds memory for so many cells.
@@ -424,6 +418,13 @@ pub(super) fn seeds(
     let numbered = (1..).map(SeedPlace::Entry).zip(positions);
     let seeds = numbered.map(|(place, position)| FileSeed { position, weight: None, id: None, place });
     Ok((FileSeeds { seeds: seeds.collect(), passed_over: None }, sizes))
+}
+
+fn of_volumes(error: VolumesError, config: &Config, seeds: &[FileSeed]) -> Error {
+    match error {
+        VolumesError::Voronoi(error) => located(error, config, seeds),
+        error => error.into(),
+    }
 }
 
 /// The error with the line of the seed file that it comes from.

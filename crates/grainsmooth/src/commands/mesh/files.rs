@@ -53,12 +53,9 @@ impl Job<'_> {
     /// The surface, without polylines that the file may have.
     pub(super) fn read(&self) -> Result<MeshFile, Error> {
         let mut mesh = read_mesh(&self.files.input)?;
-        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
-        self.report(format_args!("read        {points} points, {faces} faces"));
-        if lines > 0 {
-            self.report(format_args!("dropped     {lines} polylines beside the faces"));
-            mesh.lines.clear();
-        }
+        let points = mesh.points.len();
+        self.report_read(points, [(mesh.faces.len(), "faces"), (mesh.lines.len(), "polylines")]);
+        mesh.lines.clear();
         if let Some(corners) = mesh.merged_corners {
             self.report(format_args!(
                 "merged      {corners} corners with exactly equal coordinates to {points} points"
@@ -70,13 +67,17 @@ impl Job<'_> {
     /// The polylines, without faces that the file may have.
     pub(super) fn read_lines(&self) -> Result<MeshFile, Error> {
         let mut mesh = read_polylines(&self.files.input)?;
-        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
-        self.report(format_args!("read        {points} points, {lines} polylines"));
-        if faces > 0 {
-            self.report(format_args!("dropped     {faces} faces beside the polylines"));
-            mesh.faces.clear();
-        }
+        self.report_read(mesh.points.len(), [(mesh.lines.len(), "polylines"), (mesh.faces.len(), "faces")]);
+        mesh.faces.clear();
         Ok(mesh)
+    }
+
+    /// Says how many parts there are of a kind, and how many of another that are left out.
+    fn report_read(&self, points: usize, [(count, kind), (others, other)]: [(usize, &str); 2]) {
+        self.report(format_args!("read        {points} points, {count} {kind}"));
+        if others > 0 {
+            self.report(format_args!("dropped     {others} {other} beside the {kind}"));
+        }
     }
 
     /// The mesh or polylines, with the creases and corners of the command line beside those of the file.
@@ -87,7 +88,7 @@ impl Job<'_> {
                 mesh.creases.extend(&features.creases);
                 mesh.corners.extend(&features.corners);
                 if let Some(boundary) = features.boundary {
-                    mesh.boundary = boundary.into();
+                    mesh.boundary = boundary;
                 }
                 Ok(mesh)
             }

@@ -2,9 +2,10 @@
 
 use texture::CrystalSymmetry;
 
-use super::super::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList, is_unsolved_angle};
+use super::super::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
 use super::file::{Hdf5, base, damaged, parent, within};
 use super::geometry::Geometry;
+use super::points::{SEVERAL_MAPS, solved_phase};
 use crate::error::map_file::MapProblem;
 
 /// The points of the only map in a file; nothing where it has none.
@@ -19,12 +20,7 @@ pub(super) fn read(file: &Hdf5) -> Result<Option<PointList>, MapProblem> {
     let group = match groups[..] {
         [] => return Ok(None),
         [group] => group,
-        _ => {
-            return Err(MapProblem::Unfit {
-                what: "it holds several maps of orientations",
-                remedy: "save the one to read in a file of its own",
-            });
-        }
+        _ => return Err(SEVERAL_MAPS),
     };
     let geometry = Geometry::of(file, &within(group, "Phases"))?;
     let geometry = geometry.ok_or_else(|| damaged("it tells no grid of its orientations"))?;
@@ -55,17 +51,11 @@ pub(super) fn read(file: &Hdf5) -> Result<Option<PointList>, MapProblem> {
     let point = |(at, number): (usize, &f64)| {
         let angles = [0, 1, 2].map(|k| angles[3 * at + k].to_degrees());
         let confidence = confidence.as_ref().map(|confidence| confidence[at]);
-        #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
-        let phase = *number as i64;
-        let is_solved = phase > 0
-            && confidence.is_none_or(|confidence| confidence >= 0.0)
-            && angles.iter().all(|angle| angle.is_finite())
-            && !angles.into_iter().any(is_unsolved_angle);
         let [column, row] = [at % columns, at / columns];
         MapPoint {
             line: at + 1,
             place: [column as f64 * geometry.spacing.x, row as f64 * geometry.spacing.y],
-            phase: is_solved.then_some(phase),
+            phase: solved_phase(*number, angles, confidence),
             angles,
             quality: quality.as_ref().map_or(f64::NAN, |quality| quality[at]),
             confidence,

@@ -106,7 +106,7 @@ impl Hdf5 {
     /// [`MapProblem::Damaged`].
     pub(super) fn numbers(&self, path: &str) -> Result<Option<Vec<f64>>, MapProblem> {
         let found = self.stored(path)?;
-        Ok(found.map(|found| found.number_type.floats(&found.bytes, found.order)))
+        Ok(found.map(|found| found.number_type.numbers(&found.bytes, found.order).collect()))
     }
 
     fn stored(&self, path: &str) -> Result<Option<Stored>, MapProblem> {
@@ -132,7 +132,7 @@ impl Hdf5 {
         let (_, group) = self.groups.iter().find(|(path, _)| path == group)?;
         let attribute = group.attribute(name).ok()?;
         let (number_type, order) = number_type(&attribute.datatype)?;
-        Some(number_type.floats(&attribute.raw_data, order))
+        Some(number_type.numbers(&attribute.raw_data, order).collect())
     }
 }
 

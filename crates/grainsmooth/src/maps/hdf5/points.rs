@@ -88,11 +88,25 @@ pub(super) fn read(file: &Hdf5) -> Result<Option<PointList>, MapProblem> {
     match found[..] {
         [] => Ok(None),
         [(maker, group)] => points(file, maker, group).map(Some),
-        _ => Err(MapProblem::Unfit {
-            what: "it holds several maps of orientations",
-            remedy: "save the one to read in a file of its own",
-        }),
+        _ => Err(SEVERAL_MAPS),
     }
+}
+
+/// What is wrong with a file of several maps.
+pub(super) const SEVERAL_MAPS: MapProblem = MapProblem::Unfit {
+    what: "it holds several maps of orientations",
+    remedy: "save the one to read in a file of its own",
+};
+
+/// The phase of a point; nothing where the point has no solution.
+pub(super) fn solved_phase(number: f64, angles: [f64; 3], confidence: Option<f64>) -> Option<i64> {
+    #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
+    let phase = number as i64;
+    let is_solved = phase > 0
+        && confidence.is_none_or(|confidence| confidence >= 0.0)
+        && angles.iter().all(|angle| angle.is_finite())
+        && !angles.into_iter().any(is_unsolved_angle);
+    is_solved.then_some(phase)
 }
 
 fn points(file: &Hdf5, maker: &Maker, group: &str) -> Result<PointList, MapProblem> {
@@ -141,22 +155,17 @@ fn points(file: &Hdf5, maker: &Maker, group: &str) -> Result<PointList, MapProbl
             [0, 1, 2].map(|k| angles[k][at])
         };
         let mut angles = radians_or_degrees.map(|angle| angle * unit);
-        let number = phase_of[at];
         let confidence = confidence.as_ref().map(|confidence| confidence[at]);
-        #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
-        let phase = number as i64;
-        let is_solved = phase > 0
-            && confidence.is_none_or(|confidence| confidence >= 0.0)
-            && angles.iter().all(|angle| angle.is_finite())
-            && !angles.into_iter().any(is_unsolved_angle);
-        let symmetry = phases.iter().find(|known| known.number == phase).and_then(|known| known.symmetry);
+        let phase = solved_phase(phase_of[at], angles, confidence);
+        let symmetry =
+            phases.iter().find(|known| Some(known.number) == phase).and_then(|known| known.symmetry);
         if maker.is_turned {
             angles[2] -= symmetry.map_or(0.0, hkl_turn);
         }
         MapPoint {
             line: at + 1,
             place: [places[0][at], places[1][at]],
-            phase: is_solved.then_some(phase),
+            phase,
             angles,
             quality: quality.as_ref().map_or(f64::NAN, |quality| quality[at]),
             confidence,

@@ -9,13 +9,14 @@ use subzero::BezierError;
 
 use super::Model;
 use super::drawing::Asked;
-use super::surface::{EditedMesh, scheme};
+use super::surface::EditedMesh;
 use crate::error::Error;
 use crate::error::mesh_file::MeshFileProblem;
 use crate::files::output::OutputPath;
-use crate::files::staged_files::write_together;
 use crate::mesh::file::{MeshFormat, MeshToWrite, write_mesh};
-use crate::mesh::{BezierFile, CarriedData, Connectivity, bezier_json, levels_json, mesh_json, subdivide};
+use crate::mesh::{
+    BezierFile, CarriedData, Connectivity, Scheme, bezier_json, levels_json, mesh_json, subdivide,
+};
 use crate::vtk::Cells;
 
 /// What is told of itself by files that hold how they were made.
@@ -80,13 +81,8 @@ pub(super) fn write(model: &Model, of: &Path, wanted: &Wanted, path: &Path) -> R
             let file = bezier.file().map_err(located)?;
             let samples = wanted.view.as_ref().map_or(2, |view| view.samples.clamp(2, 200));
             match format {
-                MeshFormat::Json => {
-                    write_together(|files| output.stage(files, |out| bezier_json(&file, samples, out)))
-                }
-                _ => write_bezier(&file, samples, &output).map_err(|error| match error {
-                    SaveError::Problem(problem) => located(problem),
-                    SaveError::Written(error) => error,
-                }),
+                MeshFormat::Json => output.write(|out| bezier_json(&file, samples, out)),
+                _ => write_bezier(&file, samples, of, &output),
             }
         }
     }
@@ -99,13 +95,11 @@ fn write_edited(
     output: &OutputPath<MeshFormat>,
 ) -> Result<(), Error> {
     let mesh = edited.current();
-    let steps = view.and_then(|view| Some((scheme(&view.scheme)?, view.level)));
+    let steps = view.and_then(|view| Some((Scheme::named(&view.scheme)?, view.level)));
     if let Some((scheme, level)) = steps {
         let levels = subdivide(&mesh, of, scheme, level)?;
         if output.format() == MeshFormat::Json {
-            return write_together(|files| {
-                output.stage(files, |out| levels_json(&mesh, scheme, &levels, out))
-            });
+            return output.write(|out| levels_json(&mesh, scheme, &levels, out));
         }
         let Some(last) = levels.last() else { return Ok(()) };
         let faces = last.mesh.faces();
@@ -127,7 +121,7 @@ fn write_edited(
         );
     }
     if output.format() == MeshFormat::Json && !edited.is_of_curves() {
-        return write_together(|files| output.stage(files, |out| mesh_json(&mesh, None, out)));
+        return output.write(|out| mesh_json(&mesh, None, out));
     }
     let triangles = mesh.triangles();
     let (cells, arrays) = match &triangles {
@@ -144,24 +138,24 @@ fn write_edited(
     write_mesh(&content, output)
 }
 
-enum SaveError {
-    Problem(MeshFileProblem),
-    Written(Error),
-}
-
 /// Curves as polylines; patches as one closed mesh.
-fn write_bezier(file: &BezierFile, samples: u32, output: &OutputPath<MeshFormat>) -> Result<(), SaveError> {
-    let problem = |error: BezierError| SaveError::Problem(error.into());
+fn write_bezier(
+    file: &BezierFile,
+    samples: u32,
+    of: &Path,
+    output: &OutputPath<MeshFormat>,
+) -> Result<(), Error> {
+    let located = |problem| Error::MeshFile { path: of.to_owned(), problem };
+    let failed = |error: BezierError| located(error.into());
     match (file.curves.is_empty(), file.surfaces.is_empty()) {
-        (false, false) => Err(SaveError::Problem(MeshFileProblem::CurvesAndSurfaces)),
+        (false, false) => Err(located(MeshFileProblem::CurvesAndSurfaces)),
         (_, true) => {
-            let (points, lines) = file.polylines(samples).map_err(problem)?;
-            write_mesh(&content(&points, Cells::Polylines(&lines)), output).map_err(SaveError::Written)
+            let (points, lines) = file.polylines(samples).map_err(failed)?;
+            write_mesh(&content(&points, Cells::Polylines(&lines)), output)
         }
         (true, false) => {
-            let merged = file.merged(samples, true).map_err(problem)?;
+            let merged = file.merged(samples, true).map_err(failed)?;
             write_mesh(&content(&merged.points, Cells::Triangles(&merged.triangles)), output)
-                .map_err(SaveError::Written)
         }
     }
 }
