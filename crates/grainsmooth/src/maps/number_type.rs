@@ -89,13 +89,17 @@ impl NumberType {
 /// # Errors
 /// [`MapProblem::NotWhole`].
 pub(super) fn labels_of_floats(numbers: impl Iterator<Item = f64>) -> Result<Vec<i32>, MapProblem> {
-    let label = |(voxel, label): (usize, f64)| {
+    let mut labels = Vec::with_capacity(numbers.size_hint().0);
+    for (voxel, label) in numbers.enumerate() {
         let is_label = label.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&label);
+        if !is_label {
+            return Err(MapProblem::NotWhole { voxel, label });
+        }
         // Checked to fit.
         #[allow(clippy::cast_possible_truncation)]
-        if is_label { Ok(label as i32) } else { Err(MapProblem::NotWhole { voxel, label }) }
-    };
-    numbers.enumerate().map(label).collect()
+        labels.push(label as i32);
+    }
+    Ok(labels)
 }
 
 fn numbers<const N: usize, T>(
