@@ -242,9 +242,9 @@ impl Polycrystal {
         }
         let to_write = made.to_write();
         outputs.iter().try_for_each(|output| output.check_holds(&to_write)).map_err(to_python)?;
-        let needs_tetrahedra = outputs.iter().any(|output| output.format().needs_tetrahedra(&to_write));
+        let needs_elements = outputs.iter().any(|output| output.format().needs_elements(&to_write));
         run(py, threads, progress, move |tell| {
-            if needs_tetrahedra && made.volume_mesh.is_none() {
+            if needs_elements && made.volume_mesh.is_none() {
                 tell(Stage::Filling, 0, 1);
                 made = Arc::new(Arc::unwrap_or_clone(made).filled()?);
             }

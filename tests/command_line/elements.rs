@@ -75,23 +75,43 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
             "--solver-deck tension-x -o a.inp --periodic x",
             "--solver-deck loads a box that is periodic along all axes or none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
         ),
+        (
+            "--dim 2 --volume-mesh",
+            "--volume-mesh needs triangles, which have a size in 2D; give --elements-per-grain or --element-size as well",
+        ),
+        (
+            "--dim 2 --elements-per-grain 2 --volume-mesh",
+            "--volume-mesh writes triangles that fill grains, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+        ),
+        (
+            "--plane-state strain -o a.inp",
+            "--plane-state is for elements in 2D; give --dim 2 or leave it out",
+        ),
+        (
+            "--dim 2 --plane-state strain",
+            "--plane-state is a property of elements in .inp and .bdf; give -o grains.inp, or leave it out",
+        ),
         ("--order 2", "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
         (
             "--cohesive --order 2 -o a.inp",
-            "--cohesive makes elements COH3D6, and Abaqus has none of second order; leave --order 2 or --cohesive out",
+            "--cohesive makes elements COH3D6 or COH2D4, and Abaqus has none of second order; leave --order 2 or --cohesive out",
         ),
         (
             "--cohesive --solver-deck tension-x -o a.inp",
-            "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out",
+            "--cohesive makes elements COH3D6 or COH2D4, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out",
         ),
-        ("--dim 2 --volume-mesh", "tetrahedra fill grains in 3D only; with --dim 2 leave --volume-mesh out"),
     ] {
         workplace.refuses(&format!("--seeds 3 {options}"), USAGE, message);
     }
     workplace.refuses(
         "--seeds 3 --dim 2 -o a.bdf",
         FAILED,
-        "a.bdf: this format holds 3D grains only; choose another, such as .vtp",
+        "a.bdf: in 2D, triangles that fill grains have a size; give --elements-per-grain or --element-size",
+    );
+    workplace.refuses(
+        "--seeds 3 --dim 2 -o a.inp",
+        FAILED,
+        "a.inp: in 2D, triangles that fill grains have a size; give --elements-per-grain or --element-size, or --voxels NX NY",
     );
 }
 
@@ -102,11 +122,6 @@ fn sizes_that_cannot_be_had_are_refused() {
         "--seeds 3 --size-growth 0.3",
         USAGE,
         "--size-growth changes sizes of elements; give --elements-per-grain or --element-size as well",
-    );
-    workplace.refuses(
-        "--seeds 3 --dim 2 --element-size 0.1",
-        USAGE,
-        "only boundaries in 3D are remeshed; with --dim 2 leave --element-size and --elements-per-grain out",
     );
     workplace.refuses(
         "--seeds 3 --element-size 0",

@@ -35,6 +35,28 @@ fn dry_run_knows_how_fine_arcs_are() {
 }
 
 #[test]
+fn dry_run_foretells_elements_of_a_size() {
+    let workplace = Workplace::new();
+    for (arguments, elements) in [
+        ("--seeds 60 --dim 2 --elements-per-grain 6 -o a.vtp", "segments"),
+        ("--seeds 20 -n 2 --elements-per-grain 4 -o a.vtp", "triangles"),
+    ] {
+        let foretold = text(&workplace, &format!("{arguments} --dry-run"));
+        let number = |line: &str| -> f64 {
+            let line = foretold.lines().find(|text| text.starts_with(line)).unwrap();
+            line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
+        };
+        workplace.run(&format!("{arguments} --json-summary run.json"));
+        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let is_near = |foretold: f64, made: &Value| (foretold / made.as_f64().unwrap() - 1.0).abs() < 0.2;
+        assert!(is_near(number(elements), &run["elements"]), "{foretold} {}", run["elements"]);
+        if elements == "segments" {
+            assert!(is_near(number("filled"), &run["filled"]["count"]), "{foretold} {}", run["filled"]);
+        }
+    }
+}
+
+#[test]
 fn dry_run_foretells_the_run_and_writes_nothing() {
     let workplace = Workplace::new();
     for arguments in [

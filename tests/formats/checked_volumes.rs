@@ -169,3 +169,24 @@ fn damaged_files_of_other_formats_are_refused() {
         }
     }
 }
+
+/// Cohesive elements close what is between grains with nodes of their own; where one is missing, or its nodes are others, faces lie on each other.
+#[test]
+fn cohesive_meshes_are_closed() {
+    let test = "cohesive_meshes_are_closed";
+    for (periodic, periodic_cut) in BOXES {
+        let mut config = Config { periodic, periodic_cut, ..coarse(4) };
+        config.file.volume.cohesive = true;
+        let Some(polycrystal) = filled(test, &config) else { return };
+        let (_folder, path) = write(&polycrystal, "a.inp");
+        let found = report(&path);
+        assert!(found.good && found.cohesive_elements > 50, "{found}");
+        let inp = std::fs::read_to_string(path).unwrap();
+        let (line, fewer) = without_line(&inp, "*ELEMENT, TYPE=COH3D6, ELSET=COHESIVE\n");
+        let number = line.split_once(", ").unwrap().0;
+        let set = format!("GENERATE\n{number}, ");
+        let next: usize = number.parse().unwrap();
+        let fewer = fewer.replacen(&set, &format!("GENERATE\n{}, ", next + 1), 1);
+        assert!(kinds("fewer.inp", &fewer).contains(&"torn"), "{:?}", kinds("fewer.inp", &fewer));
+    }
+}

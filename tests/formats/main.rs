@@ -9,6 +9,7 @@ mod grids;
 mod hdf5;
 mod images;
 mod maps;
+mod plane;
 #[path = "../common/programs.rs"]
 mod programs;
 mod quiet_reader;

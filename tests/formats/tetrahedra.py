@@ -116,11 +116,44 @@ if expected["periodic"]:
 else:
     assert "PeriodicOriginal" not in vtu.point_data
 
+if expected["order"] == 2:
+    # A uniform stress is at rest: at each node away from walls, the gradients of its shape functions add up to nothing. They are cubic, which five points integrate exactly and the four of
+    # C3D10 do not.
+    def forces_out_of_balance(rule):
+        nodes = vtu.cells_dict[solid]
+        if expected["periodic"]:
+            nodes = originals[nodes]
+        forces, sizes = numpy.zeros((len(vtu.points), 3)), numpy.zeros(len(vtu.points))
+        for weight, at in rule:
+            by = numpy.zeros((10, 4))
+            by[range(4), range(4)] = [4 * share - 1 for share in at]
+            for middle, (i, j) in enumerate(EDGES, start=4):
+                by[middle, i], by[middle, j] = 4 * at[j], 4 * at[i]
+            local = by[:, 1:] - by[:, :1]
+            jacobian = numpy.einsum("ni,enx->exi", local, vtu.points[vtu.cells_dict[solid]])
+            gradients = numpy.einsum("ni,eix->enx", local, numpy.linalg.inv(jacobian))
+            gradients *= weight / 6 * numpy.linalg.det(jacobian)[:, None, None]
+            numpy.add.at(forces, nodes, gradients)
+            numpy.add.at(sizes, nodes, numpy.linalg.norm(gradients, axis=2))
+        if not expected["periodic"]:
+            is_on_wall = ((vtu.points == 0) | (vtu.points == expected["box"])).any(axis=1)
+            forces[is_on_wall] = 0
+        return (numpy.linalg.norm(forces, axis=1) / numpy.maximum(sizes, 1e-300)).max()
+
+    near, far = 0.1381966011250105, 0.5854101966249685
+    four = [(1 / 4, [far if k == at else near for k in range(4)]) for at in range(4)]
+    five = [(-4 / 5, [1 / 4] * 4)] + [(9 / 20, [1 / 2 if k == at else 1 / 6 for k in range(4)]) for at in range(4)]
+    assert forces_out_of_balance(five) < 1e-12 and forces_out_of_balance(four) > 1e-6
+
 bdf = meshio.read("grains.bdf")
 assert numpy.abs(bdf.points - vtu.points).max() < 1e-12
 assert (bdf.cells_dict[solid] == vtu.cells_dict[solid]).all()
 assert (bdf.cell_data_dict["nastran:ref"][solid] == grains + 1).all()
 check_volumes(bdf, grains, 1e-9)
+
+xdmf = meshio.read("grains.xdmf")
+assert (xdmf.points == vtu.points).all() and (xdmf.cells_dict[solid] == vtu.cells_dict[solid]).all()
+assert (xdmf.cell_data_dict["GrainId"][solid] == grains).all()
 
 msh = meshio.read("grains.msh")
 assert sum(len(block.data) for block in msh.cells if block.type == triangle) == expected["triangles"]

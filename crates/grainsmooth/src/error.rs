@@ -57,6 +57,15 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// Triangles fill grains in the plane, and nothing says how large.
+    #[error(
+        "{}: in 2D, triangles that fill grains have a size; give --elements-per-grain or --element-size{}", path.display(),
+        if path.extension().is_some_and(|extension| extension == "inp") { ", or --voxels NX NY" } else { "" }
+    )]
+    NoElementSize {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// A file of voxels is larger than what is free where it is to go.
     #[error(
         "{}: would take {} and {} are free there; use fewer voxels or choose another path",

@@ -18,6 +18,8 @@ pub struct Estimate {
     pub grains: usize,
     /// Points, edges and triangles of the finest level.
     pub mesh: LevelSize,
+    /// Elements that fill the grains, if elements have a size: tetrahedra, in the plane triangles.
+    pub filled: Option<u128>,
     /// Whether these counts are exact.
     pub is_exact: bool,
     /// Two or three dimensions.
@@ -47,12 +49,16 @@ impl Estimate {
             }
             _ => crate::run::pipeline::control_mesh(config, tessellation),
         };
-        let mesh = control_mesh.after(config.levels);
         let grains = cells.grain_count();
+        let smooth = control_mesh.after(config.levels);
+        let remeshed = config.elements.are_asked().then(|| Remeshed::new(config, cells));
+        let mesh = remeshed.as_ref().map_or(smooth, |remeshed| remeshed.boundaries);
         Self {
             grains,
             mesh,
-            is_exact: !matches!(config.face_mesh, FaceMesh::Refined { .. })
+            filled: remeshed.map(|remeshed| remeshed.filled),
+            is_exact: !config.elements.are_asked()
+                && !matches!(config.face_mesh, FaceMesh::Refined { .. })
                 && !config.lets_topology_change()
                 && (config.effective_regularize() == 0.0 || is_flat),
             dimension: config.dimension,
@@ -76,6 +82,57 @@ impl Estimate {
     }
 }
 
+/// How many elements of a size there will be, by what 200 random grains had with 5 and 10 edges to the mean diameter, and 30 to 2000 in the plane.
+struct Remeshed {
+    boundaries: LevelSize,
+    filled: u128,
+}
+
+/// Triangles on boundaries, for each grain's squared diameter in units of the size: 5.2 to 5.7 were found. They are shared by two grains.
+const TRIANGLES: f64 = 5.4;
+
+/// Tetrahedra for the volume in units of the cubed size, and more for each triangle.
+const TETRAHEDRA: f64 = 3.0;
+const TETRAHEDRA_OF_TRIANGLE: f64 = 1.3;
+
+/// In the plane, segments for each grain's diameter in units of the size, and triangles for the area in units of the squared size: 2.26 to 2.35 were found.
+const SEGMENTS: f64 = 2.1;
+const PLANE_TRIANGLES: f64 = 2.3;
+
+impl Remeshed {
+    fn new(config: &Config, cells: &Tessellated) -> Self {
+        let volumes = cells.volumes();
+        let diameters: Vec<f64> =
+            volumes.iter().map(|volume| config.dimension.ball_diameter(*volume)).collect();
+        let mean = diameters.iter().sum::<f64>() / diameters.len() as f64;
+        let per_grain = config.elements.elements_per_grain.map(|count| mean / count);
+        let size = config.elements.element_size.or(per_grain).unwrap_or(mean);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "saturates, and is positive"
+        )]
+        let count = |number: f64| number.ceil() as u128;
+        let of_diameters =
+            |power: i32| diameters.iter().map(|diameter| (diameter / size).powi(power)).sum::<f64>();
+        let whole: f64 = volumes.iter().sum();
+        match config.dimension {
+            Dimension::Two => {
+                let segments = count(SEGMENTS * of_diameters(1));
+                let boundaries = LevelSize { points: segments, edges: segments, triangles: 0 };
+                Self { boundaries, filled: count(PLANE_TRIANGLES * whole / size.powi(2)) }
+            }
+            Dimension::Three => {
+                let triangles = TRIANGLES * of_diameters(2);
+                let filled = TETRAHEDRA * whole / size.powi(3) + TETRAHEDRA_OF_TRIANGLE * triangles;
+                let triangles = count(triangles);
+                let boundaries = LevelSize { points: triangles / 2, edges: triangles * 3 / 2, triangles };
+                Self { boundaries, filled: count(filled) }
+            }
+        }
+    }
+}
+
 impl fmt::Display for Estimate {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(out, "grains      {}", self.grains)?;
@@ -84,6 +141,12 @@ impl fmt::Display for Estimate {
         match self.dimension {
             Dimension::Two => writeln!(out, "segments    {about}{}", self.mesh.edges)?,
             Dimension::Three => writeln!(out, "triangles   {about}{}", self.mesh.triangles)?,
+        }
+        if let Some(filled) = self.filled {
+            match self.dimension {
+                Dimension::Two => writeln!(out, "filled      about {filled} triangles")?,
+                Dimension::Three => writeln!(out, "filled      about {filled} tetrahedra")?,
+            }
         }
         if let Some(bytes) = self.file {
             writeln!(out, "file        about {bytes} bytes ({})", in_words(bytes))?;

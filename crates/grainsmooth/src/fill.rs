@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use cancellation::check_cancelled;
 use polycrystal::{GrainId, Mesh};
+use voronoi::Dimension;
 
 use crate::volume_mesh::VolumeMesh;
 use crate::{Error, Output, Polycrystal, Stage};
@@ -51,11 +52,14 @@ pub fn check_gmsh() -> Result<(), Error> {
 }
 
 impl Polycrystal {
-    /// Fills the grains with tetrahedra between the triangles of their boundaries, which stay as they are.
+    /// Fills the grains with tetrahedra between the triangles of their boundaries, which stay as they are. In the plane grains are filled as elements get their size.
     ///
     /// # Errors
     /// [`Error::NoGmsh`]; [`Error::NotFilled`] with the grains that Gmsh could not fill.
     pub fn filled(mut self) -> Result<Self, Error> {
+        if self.dimension() == Dimension::Two {
+            return Ok(self);
+        }
         check_gmsh()?;
         let start = Instant::now();
         let folder = tempfile::tempdir().map_err(|cause| Error::NoGmsh { cause: cause.to_string() })?;

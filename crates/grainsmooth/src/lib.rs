@@ -71,7 +71,7 @@ pub use config::sizes::{SizeDraw, SizeOptions, SizeSource};
 #[doc(hidden)]
 pub use config::spelling;
 pub use config::texture::{TextureFormat, TextureOptions, TextureSource};
-pub use config::volume_mesh::{SolverDeck, VolumeMeshOptions};
+pub use config::volume_mesh::{PlaneState, SolverDeck, VolumeMeshOptions};
 pub use config::{Config, PeriodicCut, SeedSource, Shape};
 pub use error::Error;
 pub use error::failed_grain::FailedGrain;
@@ -145,6 +145,7 @@ pub use summary::record::SummaryRecord;
 pub use summary::{CellsSummary, ListedSummary, Summary};
 pub use tables::cell_table::{CellTable, TableFormat};
 pub use tables::statistics::{NetworkStatistics, StatisticsOutput};
+pub use volume_mesh::filled_plane::{FilledPlane, PlaneQuality};
 pub use volume_mesh::quality::{ShapeHistogram, TetrahedronQuality};
 pub use volume_mesh::{CurvedEdges, VolumeMesh};
 

@@ -18,8 +18,8 @@ use crate::figures::counted::Counted;
 use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, ListedCells, Polycrystal, Reconnected, Regularization, SeedSource,
-    ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
+    Config, EquivalentDiameters, FilledPlane, ListedCells, Polycrystal, Reconnected, Regularization,
+    SeedSource, ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 use measured::{write_crystals, write_map};
 
@@ -91,7 +91,10 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
             writeln!(out, "tetrahedra  {quality}")?;
         }
-        if let Some(curved) = polycrystal.volume_mesh.as_ref().and_then(|mesh| mesh.curved) {
+        if let Some(quality) = polycrystal.plane_mesh.as_ref().and_then(FilledPlane::quality) {
+            writeln!(out, "filled      {quality}")?;
+        }
+        if let Some(curved) = polycrystal.curved_edges() {
             writeln!(out, "curved      {curved}")?;
         }
         if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {

@@ -1,9 +1,11 @@
-//! Tetrahedra that fill grains, and how good they are.
+//! Tetrahedra that fill grains, in the plane triangles, and how good they are.
 
 pub(crate) mod cohesive;
 pub(crate) mod curved;
 pub(crate) mod element_faces;
 pub(crate) mod element_nodes;
+pub(crate) mod element_shape;
+pub(crate) mod filled_plane;
 pub(crate) mod quality;
 pub(crate) mod repair;
 

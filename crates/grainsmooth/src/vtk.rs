@@ -105,10 +105,38 @@ pub enum Cells<'a> {
     Polylines(&'a [Vec<u32>]),
     /// So many first points, each a cell.
     Vertices(usize),
-    /// Four points each; for unstructured grids alone.
-    Tetrahedra(&'a [[u32; 4]]),
-    /// Ten points each: the corners, then the middles of the edges 0 1, 1 2, 2 0, 0 3, 1 3, 2 3; for unstructured grids alone.
-    QuadraticTetrahedra(&'a [[u32; 10]]),
+    /// Finite elements of one shape, the points of each after those of the one before; for unstructured grids alone.
+    Elements(ElementType, &'a [u32]),
+}
+
+/// A type of finite elements, with VTK's code for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ElementType {
+    /// Three corners.
+    Triangle = 5,
+    /// Four corners around a square.
+    Quad = 9,
+    /// Four corners.
+    Tetrahedron = 10,
+    /// Four corners around a square, and those above them.
+    Hexahedron = 12,
+    /// Three corners, and the middles of the edges 0 1, 1 2, 2 0.
+    QuadraticTriangle = 22,
+    /// Four corners, and the middles of the edges 0 1, 1 2, 2 0, 0 3, 1 3, 2 3.
+    QuadraticTetrahedron = 24,
+}
+
+impl ElementType {
+    /// Number of points.
+    pub fn point_count(self) -> usize {
+        match self {
+            Self::Triangle => 3,
+            Self::Quad | Self::Tetrahedron => 4,
+            Self::QuadraticTriangle => 6,
+            Self::Hexahedron => 8,
+            Self::QuadraticTetrahedron => 10,
+        }
+    }
 }
 
 impl Cells<'_> {
@@ -119,14 +147,13 @@ impl Cells<'_> {
             Self::TrianglesOf { count, .. } => *count,
             Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
             Self::Vertices(count) => *count,
-            Self::Tetrahedra(tetrahedra) => tetrahedra.len(),
-            Self::QuadraticTetrahedra(tetrahedra) => tetrahedra.len(),
+            Self::Elements(kind, points) => points.len() / kind.point_count(),
         }
     }
 
-    /// Whether the cells are solids, which PolyData cannot hold.
-    fn are_solids(&self) -> bool {
-        matches!(self, Self::Tetrahedra(_) | Self::QuadraticTetrahedra(_))
+    /// Whether the cells are finite elements, which PolyData cannot hold.
+    fn are_elements(&self) -> bool {
+        matches!(self, Self::Elements(..))
     }
 
     /// Whether there is no cell.
@@ -140,8 +167,7 @@ impl Cells<'_> {
             Self::Triangles(_) | Self::TrianglesOf { .. } => 3 * self.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
             Self::Vertices(count) => *count,
-            Self::Tetrahedra(tetrahedra) => 4 * tetrahedra.len(),
-            Self::QuadraticTetrahedra(tetrahedra) => 10 * tetrahedra.len(),
+            Self::Elements(_, points) => points.len(),
         }
     }
 }

@@ -12,6 +12,7 @@ mod middles;
 mod outline;
 mod parts;
 mod patch;
+mod plane;
 mod reference;
 mod shaping;
 mod size_field;
@@ -24,17 +25,17 @@ use std::borrow::Cow;
 
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
-use subzero::EdgeId;
-use voronoi::Translation;
+use voronoi::{Dimension, Translation};
 
 use crate::mesh::id::id;
-use crate::{Certificate, Fault, Level, Mesh, Network, NetworkError, Surface, validate};
+use crate::{Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
 use assembled::{Assembled, NewBoundary, assemble};
 use joints::separate_joints;
 use lines::{DividedLine, divide_lines};
 pub use middles::EdgeMiddles;
 use outline::{Numbering, Outlined, is_loop};
 use parts::Parts;
+pub use plane::PlaneMesh;
 use size_field::{Halved, SizeField, Surroundings};
 use skeleton::Skeleton;
 use torus::{Moved, Torus};
@@ -76,6 +77,8 @@ pub struct Remeshed {
     pub refinements: usize,
     /// The middles of edges, where these are asked for. They lie on the smooth surface, and volumes are restored by [`EdgeMiddles::restore_volumes`].
     pub middles: Option<EdgeMiddles>,
+    /// In the plane, the triangles that fill the grains.
+    pub triangles: Option<PlaneMesh>,
 }
 
 impl Network {
@@ -102,7 +105,7 @@ impl Network {
     /// ```
     ///
     /// # Errors
-    /// [`NetworkError::BadElementSize`]; [`NetworkError::RemeshPlane`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
+    /// [`NetworkError::BadElementSize`]; [`NetworkError::LinesCross`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
     /// [`NetworkError::RemeshInvalid`] with what the certificate finds where smaller elements did not help.
     ///
     /// # Panics
@@ -135,59 +138,42 @@ impl Network {
             }
         }
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
+        if self.domain().dimension() == Dimension::Two {
+            return plane::remeshed(self, points, size, cut, tuning);
+        }
         let level = &*self.reference_level(points, size.length, tuning);
         // A finer level has the vertices of a coarser one first.
         let points = &points[..level.vertex_count()];
-        let Mesh::Triangles(mesh) = &level.mesh else { return Err(NetworkError::RemeshPlane) };
+        let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("boundaries in space have triangles") };
         let torus = Torus::new(self, level, points, cut)?;
-        let skeleton = Skeleton::new(level, mesh, self.wall_sets(), &torus);
+        let skeleton = Skeleton::new((level, mesh), self.wall_sets(), &torus, |_| false);
         let parts = Parts::new((level, mesh), &skeleton, &torus, self.boundaries())?;
-        let around = Surroundings { level, mesh, points, torus: &torus, skeleton: &skeleton, parts: &parts };
-        let mut halved = Vec::new();
-        let mut most_faults = None;
-        for refinements in 0.. {
-            let sizes = SizeField::new(&around, size, &halved, tuning);
+        let around = Surroundings {
+            level,
+            mesh,
+            points,
+            torus: &torus,
+            skeleton: &skeleton,
+            parts: &parts,
+            is_plane: false,
+        };
+        until_valid(size, tuning, |halved, refinements| {
+            let sizes = SizeField::new(&around, size, halved, tuning);
             let lines = divide_lines(&skeleton.lines, around.points, &sizes, &torus);
             let numbering = Numbering::new(&around, &lines);
             let assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
             let (network, points) = (&assembled.network, assembled.points());
-            let faults = match validate(network, &points) {
-                Ok(certificate) => {
-                    let middles =
-                        size.has_middles.then(|| EdgeMiddles::new(&assembled, &around, &lines, &numbering));
-                    let network = assembled.network;
-                    return Ok(Remeshed { network, points, certificate, refinements, middles });
-                }
-                Err(faults) => faults,
+            let certificate = match validate(network, &points) {
+                Ok(certificate) => certificate,
+                Err(faults) => return Ok(Err(Faulty::of(faults, network, &points))),
             };
-            let sides = network.sides();
-            let surface = Surface::of_level(network.finest(), &points, &sides);
-            let is_of_size = |fault: &Fault| {
-                matches!(
-                    fault,
-                    Fault::Folded { .. }
-                        | Fault::Crossing { .. }
-                        | Fault::NoArea { .. }
-                        | Fault::DuplicateElements { .. }
-                        | Fault::DuplicatePoints { .. }
-                        | Fault::Pinched { .. }
-                )
-            };
-            // On the triangles of another program or run, elements that become smaller may find ever more edges to fold at.
-            let most_faults = *most_faults.get_or_insert(tuning.faults_of_first * faults.0.len());
-            let is_hopeless = refinements == tuning.refinements || faults.0.len() > most_faults;
-            if is_hopeless || !faults.0.iter().all(is_of_size) {
-                return Err(NetworkError::RemeshInvalid(faults));
-            }
-            let places: Vec<DVec3> = faults.0.iter().filter_map(|fault| fault.position(&surface)).collect();
-            for place in places {
-                halve_at(&mut halved, place, size, tuning);
-            }
-        }
-        unreachable!("refinements end")
+            let middles = size.has_middles.then(|| EdgeMiddles::new(&assembled, &around, &lines, &numbering));
+            let network = assembled.network;
+            Ok(Ok(Remeshed { network, points, certificate, refinements, middles, triangles: None }))
+        })
     }
 
-    /// The mean length of the edges of the finest level, for its points; 0 in the plane.
+    /// The mean length of the edges of the finest level, for its points; in the plane of the segments.
     ///
     /// # Panics
     /// When there is not one point per vertex.
@@ -202,14 +188,64 @@ impl Network {
     }
 }
 
-fn mean_edge_length(level: &Level, points: &[DVec3]) -> f64 {
-    let Mesh::Triangles(mesh) = &level.mesh else { return 0.0 };
-    let count = mesh.edge_count();
-    let length = |edge: u32| {
-        let [a, b] = mesh.edge(EdgeId(edge));
-        points[a as usize].distance(points[b as usize])
+/// What is wrong with what came out, and where.
+struct Faulty {
+    faults: Faults,
+    places: Vec<DVec3>,
+}
+
+impl Faulty {
+    fn of(faults: Faults, network: &Network, points: &[DVec3]) -> Self {
+        let sides = network.sides();
+        let surface = Surface::of_level(network.finest(), points, &sides);
+        let places = faults.0.iter().filter_map(|fault| fault.position(&surface)).collect();
+        Self { faults, places }
+    }
+}
+
+/// Remeshes, with elements half as large where what came out is invalid, until it is valid. `remesh` is told where they are smaller, and how often they became so.
+fn until_valid(
+    size: &ElementSize,
+    tuning: &RemeshTuning,
+    mut remesh: impl FnMut(&[Halved], usize) -> Result<Result<Remeshed, Faulty>, NetworkError>,
+) -> Result<Remeshed, NetworkError> {
+    let is_of_size = |fault: &Fault| {
+        matches!(
+            fault,
+            Fault::Folded { .. }
+                | Fault::Crossing { .. }
+                | Fault::NoArea { .. }
+                | Fault::DuplicateElements { .. }
+                | Fault::DuplicatePoints { .. }
+                | Fault::Pinched { .. }
+        )
     };
-    (0..id(count)).map(length).sum::<f64>() / count as f64
+    let mut halved = Vec::new();
+    let mut most_faults = None;
+    for refinements in 0.. {
+        let Faulty { faults, places } = match remesh(&halved, refinements)? {
+            Ok(remeshed) => return Ok(remeshed),
+            Err(faulty) => faulty,
+        };
+        // On the triangles of another program or run, elements that become smaller may find ever more edges to fold at.
+        let most_faults = *most_faults.get_or_insert(tuning.faults_of_first * faults.0.len());
+        let is_hopeless = refinements == tuning.refinements || faults.0.len() > most_faults;
+        if is_hopeless || !faults.0.iter().all(is_of_size) {
+            return Err(NetworkError::RemeshInvalid(faults));
+        }
+        places.into_iter().for_each(|place| halve_at(&mut halved, place, size, tuning));
+    }
+    unreachable!("refinements end")
+}
+
+fn mean_edge_length(level: &Level, points: &[DVec3]) -> f64 {
+    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
+    match &level.mesh {
+        Mesh::Triangles(mesh) => mesh.edges().map(length).sum::<f64>() / mesh.edge_count() as f64,
+        Mesh::Segments(mesh) => {
+            mesh.segments().iter().copied().map(length).sum::<f64>() / mesh.segments().len() as f64
+        }
+    }
 }
 
 /// Makes elements around a place half as large as they were there.
@@ -228,6 +264,20 @@ fn remesh(
     tuning: &RemeshTuning,
 ) -> Result<Assembled, NetworkError> {
     let positions = positions_on_lines(around, lines, numbering);
+    let new = shaped_parts(network, around, sizes, (lines, numbering, &positions), tuning);
+    let mut assembled = assemble(network, around, lines, numbering, positions, new)?;
+    volumes::restore(&mut assembled);
+    Ok(assembled)
+}
+
+/// The triangles of all parts that are no copies, between lines whose points are where they are.
+fn shaped_parts(
+    network: &Network,
+    around: &Surroundings<'_>,
+    sizes: &SizeField,
+    (lines, numbering, positions): (&[DividedLine], &Numbering, &[DVec3]),
+    tuning: &RemeshTuning,
+) -> Vec<NewBoundary> {
     let domain = network.domain();
     let position = |point: Moved<u32>| {
         let original = positions[point.original as usize];
@@ -247,10 +297,7 @@ fn remesh(
         })
         .collect();
     separate_joints(&mut shaped, around, lines, numbering);
-    let new = shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect();
-    let mut assembled = assemble(network, around, lines, numbering, positions, new)?;
-    volumes::restore(&mut assembled);
-    Ok(assembled)
+    shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect()
 }
 
 /// Where nodes and the points of lines are.

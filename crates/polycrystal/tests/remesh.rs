@@ -5,7 +5,7 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use common::{Labelled, ball, random_seeds, regular_network, relaxed};
+use common::{Labelled, ball, regular_network, relaxed};
 use glam::{BVec3, DVec3};
 use polycrystal::{
     BoxCut, ElementSize, Measures, Mesh, Network, NetworkError, Remeshed, measure_network, validate,
@@ -159,19 +159,13 @@ fn curved_boundaries_get_small_elements_where_asked() {
 }
 
 #[test]
-fn sizes_that_are_none_and_the_plane_are_refused() {
+fn sizes_that_are_none_are_refused() {
     let (network, flat) = regular_network(&Domain::unit_cube(), 3, 1, 0);
     let points = network.subdivide(&flat);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = network.remeshed(&points, &ElementSize::new(bad), BVec3::FALSE);
         assert!(matches!(error, Err(NetworkError::BadElementSize(_))), "{bad}");
     }
-    let square = Domain::unit_square();
-    let seeds: Vec<DVec3> = random_seeds(&square, 5, 1).iter().map(|seed| seed.with_z(0.0)).collect();
-    let (network, flat) = common::network(&square, &seeds, 1);
-    let points = network.subdivide(&flat);
-    let error = network.remeshed(&points, &ElementSize::new(0.1), BVec3::FALSE);
-    assert!(matches!(error, Err(NetworkError::RemeshPlane)));
 }
 
 /// Opposite walls of grains that are not periodic differ.

@@ -71,7 +71,7 @@ impl Files {
             if config.elements != ElementOptions::default() {
                 stages.push(Stage::Remeshing);
             }
-            if self.result.need_tetrahedra() {
+            if self.result.need_gmsh() {
                 stages.push(Stage::Filling);
             }
         }
@@ -134,7 +134,7 @@ fn compute(config: &Config, files: &Files, progress: Progress<'_>) -> Result<Str
     })?;
     added?;
     polycrystal = polycrystal.completed(progress)?;
-    if files.result.need_tetrahedra() {
+    if files.result.need_gmsh() {
         progress(Stage::Filling, 0, 1);
         polycrystal = polycrystal.filled()?;
     }

@@ -3,7 +3,6 @@
 use std::process::ExitCode;
 
 use grainsmooth::{Error, LabelledFile, Progress, Stage};
-use voronoi::Dimension;
 
 use super::result_files::{ResultFiles, show_run};
 use grainsmooth::cli::{RemeshArguments, usage};
@@ -24,11 +23,7 @@ fn remesh(arguments: &RemeshArguments, progress: Progress<'_>) -> Result<String,
     }
     progress(Stage::Network, 0, 1);
     let given = LabelledFile::read(path)?;
-    if given.surface().elements.dimension() == Dimension::Two {
-        let path = path.display();
-        return Err(usage(&format!("{path} holds grains in 2D, and only boundaries in 3D are remeshed")));
-    }
-    let (files, polycrystal) = ResultFiles::of_network(result, path, &given)?;
+    let (files, polycrystal) = ResultFiles::of_network(result, path, &given, true)?;
     progress(Stage::Remeshing, 0, 1);
     files.fill_and_write(polycrystal.remeshed(elements)?, progress)
 }

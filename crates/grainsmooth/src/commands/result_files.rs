@@ -9,9 +9,9 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    Config, DeckOutput, Error, FileOptions, Html, LabelledFile, Output, OutputDirectory, OutputFormat,
-    Picture, Png, Polycrystal, Progress, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
-    ToWrite, VolumeMeshOptions, check_gmsh, write_together,
+    Config, DeckOutput, ElementOptions, Error, FileOptions, Html, LabelledFile, Output, OutputDirectory,
+    OutputFormat, Picture, Png, Polycrystal, Progress, Stage, StagedFiles, StatisticsOutput, Summary,
+    SummaryRecord, ToWrite, VolumeMeshOptions, check_gmsh, write_together,
 };
 use voronoi::Dimension;
 
@@ -49,6 +49,7 @@ pub struct Given {
     pub has_map: bool,
     pub has_orientations: bool,
     pub has_phases: bool,
+    pub has_element_size: bool,
 }
 
 impl ResultFiles {
@@ -98,10 +99,10 @@ impl ResultFiles {
             statistics: outputs.statistics(to_write.dimension)?,
             deck: None,
         };
-        all.check_tetrahedra()?;
+        all.check_elements()?;
         let deck = all.deck()?;
         let all = Self { deck, ..all };
-        if all.need_tetrahedra() {
+        if all.need_gmsh() {
             check_gmsh()?;
         }
         Ok(all)
@@ -117,17 +118,25 @@ impl ResultFiles {
         given: Given,
     ) -> Result<(Self, FileOptions), Error> {
         let ResultArguments { outputs, pictures, shared } = arguments;
-        let Given { dimension, has_map, has_orientations, has_phases } = given;
+        let Given { dimension, has_map, has_orientations, has_phases, has_element_size } = given;
         pictures.check_known(path, has_orientations, has_phases)?;
         let file = outputs.options(dimension)?;
         let (has_voxels, volume) = (file.voxels.is_some(), file.volume);
-        let to_write = ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells: false, volume };
+        let to_write = ToWrite {
+            dimension,
+            has_voxels,
+            has_map,
+            has_orientations,
+            has_cells: false,
+            has_element_size,
+            volume,
+        };
         let files = Self::check(outputs, pictures, shared, &to_write, true)?;
         check_all_differ(files.targets())?;
         Ok((files, file))
     }
 
-    /// The same for the network of a file, and this network.
+    /// The same for the network of a file, which may get elements of a size, and this network.
     ///
     /// # Errors
     /// Also [`Error::NetworkOfMap`].
@@ -135,12 +144,14 @@ impl ResultFiles {
         arguments: &ResultArguments,
         path: &Path,
         network: &LabelledFile,
+        has_element_size: bool,
     ) -> Result<(Self, Polycrystal), Error> {
         let given = Given {
             dimension: network.surface().elements.dimension(),
             has_map: false,
             has_orientations: network.orientations.is_some(),
             has_phases: network.phases.is_some(),
+            has_element_size,
         };
         let (files, file) = Self::of_given(arguments, path, given)?;
         let domain = Arguments::domain_of(network);
@@ -149,17 +160,28 @@ impl ResultFiles {
         Ok((files, polycrystal))
     }
 
-    /// Checks that what is asked of tetrahedra goes into some file.
-    fn check_tetrahedra(&self) -> Result<(), Error> {
-        let volume = &self.to_write.volume;
-        if volume.volume_mesh && !self.need_tetrahedra() {
-            return Err(usage(
-                "--volume-mesh writes tetrahedra, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
-            ));
+    /// Checks that what is asked of elements that fill grains goes into some file.
+    fn check_elements(&self) -> Result<(), Error> {
+        let (to_write, volume) = (&self.to_write, &self.to_write.volume);
+        let elements = match to_write.dimension {
+            Dimension::Two => "triangles that fill grains",
+            Dimension::Three => "tetrahedra",
+        };
+        let has_voxels = self.formats().into_iter().any(|format| format.needs_voxel_elements(to_write));
+        if volume.volume_mesh && !has_voxels && !self.need_elements() {
+            return Err(usage(&format!(
+                "--volume-mesh writes {elements}, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+            )));
         }
-        if volume.order.is_some() && !self.need_tetrahedra() {
+        if volume.order.is_some() && !self.need_elements() {
+            return Err(usage(&format!(
+                "--order needs {elements}; give --volume-mesh -o grains.vtu, or -o grains.inp",
+            )));
+        }
+        let has_properties = self.formats().into_iter().any(OutputFormat::has_plane_state);
+        if volume.plane_state.is_some() && !has_properties {
             return Err(usage(
-                "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp",
+                "--plane-state is a property of elements in .inp and .bdf; give -o grains.inp, or leave it out",
             ));
         }
         let has_inp = self.formats().contains(&OutputFormat::INP);
@@ -170,7 +192,7 @@ impl ResultFiles {
         ] {
             if is_asked && (!has_inp || self.to_write.has_voxels) {
                 return Err(usage(&format!(
-                    "--{name} needs tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out"
+                    "--{name} needs {elements} in .inp; give -o grains.inp without --voxels, or leave it out"
                 )));
             }
         }
@@ -186,9 +208,14 @@ impl ResultFiles {
         DeckOutput::check(elements.path(), deck).map(Some)
     }
 
-    /// Whether some format holds tetrahedra.
-    pub fn need_tetrahedra(&self) -> bool {
-        self.formats().into_iter().any(|format| format.needs_tetrahedra(&self.to_write))
+    /// Whether some format holds elements that fill grains.
+    fn need_elements(&self) -> bool {
+        self.formats().into_iter().any(|format| format.needs_elements(&self.to_write))
+    }
+
+    /// Whether Gmsh fills the grains.
+    pub fn need_gmsh(&self) -> bool {
+        self.to_write.dimension == Dimension::Three && self.need_elements()
     }
 
     /// All files and directories in full.
@@ -232,8 +259,10 @@ impl ResultFiles {
         mut polycrystal: Polycrystal,
         progress: Progress<'_>,
     ) -> Result<String, Error> {
-        if self.need_tetrahedra() {
+        if self.need_elements() {
             check_solver_options(&polycrystal, &self.to_write.volume)?;
+        }
+        if self.need_gmsh() {
             progress(Stage::Filling, 0, 1);
             polycrystal = polycrystal.filled()?;
         }
@@ -327,7 +356,11 @@ pub fn check_all_differ(targets: Vec<PathBuf>) -> Result<(), Error> {
 /// [`Error::Usage`].
 fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -> Result<(), Error> {
     let network = &polycrystal.network;
-    let repeats = network.domain().periodic() | polycrystal.axes_cut_at_box();
+    let mut repeats = network.domain().periodic() | polycrystal.axes_cut_at_box();
+    if polycrystal.dimension() == Dimension::Two {
+        // The third axis has no meaning in the plane.
+        repeats.z = repeats.x;
+    }
     if volume.periodic_equations && !repeats.any() {
         return Err(usage(
             "--periodic-equations ties nodes that are one period apart, and this network does not repeat; leave it out",
@@ -340,7 +373,12 @@ fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -
         ));
     }
     let file = FileOptions { volume: *volume, ..FileOptions::default() };
-    let options = Config { periodic: repeats, file, ..Config::default() };
+    let elements = ElementOptions {
+        element_size: polycrystal.elements.map(|elements| elements.size),
+        ..ElementOptions::default()
+    };
+    let dimension = polycrystal.dimension();
+    let options = Config { dimension, periodic: repeats, elements, file, ..Config::default() };
     options.check().map_err(|error| usage(&error.to_string()))
 }
 

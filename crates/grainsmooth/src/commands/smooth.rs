@@ -34,6 +34,7 @@ fn smooth(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String,
         has_map: true,
         has_orientations: measured.crystals.is_some(),
         has_phases: measured.crystals.is_some(),
+        has_element_size: false,
     };
     let (files, file) = ResultFiles::of_given(result, path, given)?;
     let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
@@ -54,6 +55,6 @@ fn relax(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String, 
     };
     let given = LabelledFile::read(path)?;
     progress(Stage::Network, 0, 1);
-    let (files, polycrystal) = ResultFiles::of_network(result, path, &given)?;
+    let (files, polycrystal) = ResultFiles::of_network(result, path, &given, false)?;
     files.fill_and_write(polycrystal.relaxed(path, relaxation, progress)?, progress)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use glam::BVec3;
 use polycrystal::{Relaxation, Volumes};
 use texture::SampleSymmetry;
 use voronoi::Dimension;
@@ -57,14 +58,14 @@ pub enum ConfigError {
     /// How sizes of elements change, without a size.
     #[error("--{0} changes sizes of elements; give --elements-per-grain or --element-size as well")]
     ElementsWithoutSize(&'static str),
-    /// Elements of a size in the plane.
+    /// Triangles in the plane, without a size.
     #[error(
-        "only boundaries in 3D are remeshed; with --dim 2 leave --element-size and --elements-per-grain out"
+        "--{0} needs triangles, which have a size in 2D; give --elements-per-grain or --element-size as well"
     )]
-    ElementsInPlane,
-    /// Tetrahedra in the plane.
-    #[error("tetrahedra fill grains in 3D only; with --dim 2 leave --{0} out")]
-    VolumesInPlane(&'static str),
+    TrianglesWithoutSize(&'static str),
+    /// A state across the plane, in space.
+    #[error("--plane-state is for elements in 2D; give --dim 2 or leave it out")]
+    PlaneStateInSpace,
     /// Nodes are tied where no period lies between any.
     #[error(
         "--periodic-equations ties nodes that are one period apart; give --periodic x,y,z or leave it out"
@@ -72,12 +73,12 @@ pub enum ConfigError {
     EquationsWithoutPeriods,
     /// Cohesive elements between tetrahedra of second order.
     #[error(
-        "--cohesive makes elements COH3D6, and Abaqus has none of second order; leave --order 2 or --cohesive out"
+        "--cohesive makes elements COH3D6 or COH2D4, and Abaqus has none of second order; leave --order 2 or --cohesive out"
     )]
     CohesiveOrder,
     /// Cohesive elements in a job for CalculiX.
     #[error(
-        "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out"
+        "--cohesive makes elements COH3D6 or COH2D4, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out"
     )]
     CohesiveDeck,
     /// A job for a domain whose sides are not alike.
@@ -158,7 +159,7 @@ impl Config {
     fn check_elements(&self) -> Result<(), ConfigError> {
         let elements = &self.elements;
         if elements.are_asked() {
-            return if self.dimension == Dimension::Two { Err(ConfigError::ElementsInPlane) } else { Ok(()) };
+            return Ok(());
         }
         let changes = [("adapt-curvature", elements.adapt_curvature), ("size-growth", elements.size_growth)];
         match changes.into_iter().find(|(_, value)| value.is_some()) {
@@ -177,13 +178,22 @@ impl Config {
             ("solver-deck", volume.solver_deck.is_some()),
         ];
         let first = options.into_iter().find(|(_, is_given)| *is_given);
-        if let Some((name, _)) = first.filter(|_| self.dimension == Dimension::Two) {
-            return Err(ConfigError::VolumesInPlane(name));
+        let is_plane = self.dimension == Dimension::Two;
+        if let Some((name, _)) =
+            first.filter(|_| is_plane && !self.elements.are_asked() && self.file.voxels.is_none())
+        {
+            return Err(ConfigError::TrianglesWithoutSize(name));
         }
-        if volume.periodic_equations && !self.periodic.any() {
+        if volume.plane_state.is_some() && !is_plane {
+            return Err(ConfigError::PlaneStateInSpace);
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| self.periodic.test(axis));
+        // The third axis has no meaning in the plane.
+        let periodic = BVec3::new(x, y, if is_plane { x } else { z });
+        if volume.periodic_equations && !periodic.any() {
             return Err(ConfigError::EquationsWithoutPeriods);
         }
-        let is_alike = self.shape == Shape::Box && self.periodic.any() == self.periodic.all();
+        let is_alike = self.shape == Shape::Box && periodic.any() == periodic.all();
         if volume.cohesive && volume.order == Some(2) {
             return Err(ConfigError::CohesiveOrder);
         }

@@ -49,18 +49,22 @@ impl Extra {
 pub(super) enum Content {
     /// The smooth boundaries.
     Boundaries,
-    /// The same, or tetrahedra that fill grains where these are asked for.
-    BoundariesOrTetrahedra,
-    /// Tetrahedra that fill grains.
-    Tetrahedra,
+    /// The same, or elements that fill grains where these are asked for.
+    BoundariesOrElements,
+    /// Tetrahedra that fill grains, in the plane triangles.
+    Elements,
     /// The flat cells, each of them a grain.
     Cells,
     /// Numbers at voxels, and as many bytes for each as are known beforehand.
     Voxels(fn(&Config) -> u32),
-    /// Hexahedra at voxels, or tetrahedra that fill grains in space.
-    Elements,
+    /// Hexahedra at voxels, in the plane squares, where voxels are asked for; else the same.
+    ElementsOrVoxels,
+    /// As `BoundariesOrElements`, but hexahedra at voxels where both voxels and elements are asked for.
+    BoundariesElementsOrVoxels,
     /// A line for each grain, with its orientation.
     Orientations,
+    /// A line for each grain.
+    Grains,
 }
 
 /// What is written beside a file, under its name.

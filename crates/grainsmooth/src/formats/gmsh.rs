@@ -8,7 +8,9 @@
 //! are one physical volume; and a boundary several surfaces, which are one physical surface. Where the file holds tetrahedra, they stand on one volume for
 //! each grain, and there is no script.
 
+mod groups;
 mod periodic;
+mod plane;
 mod volumes;
 
 use std::collections::BTreeMap;
@@ -35,7 +37,7 @@ const SCRIPT: &str = "geo";
 
 pub(super) const FORMAT: Format = Format {
     extension: "msh",
-    content: Content::BoundariesOrTetrahedra,
+    content: Content::BoundariesOrElements,
     bytes: |size| TEXT_POINT * size.mesh.points + (TEXT_CORNERS + 8) * size.mesh.triangles,
     write: Writer::Files(stage),
     extra: Extra {
@@ -47,13 +49,29 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn stage(polycrystal: &Polycrystal, output: &OutputPath<()>, files: &mut StagedFiles) -> Result<(), Error> {
-    if let Some(mesh) = polycrystal.tetrahedra_instead_of_boundaries() {
-        return output.stage(files, |out| volumes::write(&polycrystal.surface()?, mesh, polycrystal, out));
-    }
-    output.stage(files, |out| write(&polycrystal.surface()?, polycrystal, out))?;
     let script = OutputPath::check_as(output.path().with_extension(SCRIPT), ())?;
     let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
+    if polycrystal.writes_elements() {
+        output.stage(files, |out| match polycrystal.dimension() {
+            Dimension::Two => plane::write(polycrystal, out),
+            Dimension::Three => volumes::write(&polycrystal.surface()?, polycrystal, out),
+        })?;
+        // What an earlier run left would fill grains that are filled.
+        if script.target().exists() {
+            script.stage(files, |out| write_script_head(polycrystal, &mesh, out))?;
+        }
+        return Ok(());
+    }
+    output.stage(files, |out| write(&polycrystal.surface()?, polycrystal, out))?;
     script.stage(files, |out| write_script(&polycrystal.surface()?, polycrystal, &mesh, out))
+}
+
+/// Writes what opens the mesh file beside the script.
+fn write_script_head(polycrystal: &Polycrystal, mesh: &str, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    polycrystal.provenance().write_comments("// ", out)?;
+    write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
+    writeln!(out, "Merge \"{mesh}\";")
 }
 
 /// Writes the script, which reads the mesh file of the given name beside it.
@@ -63,10 +81,7 @@ fn write_script(
     mesh: &str,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    polycrystal.provenance().write_comments("// ", out)?;
-    write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
-    writeln!(out, "Merge \"{mesh}\";")?;
+    write_script_head(polycrystal, mesh, out)?;
     let grain_count = polycrystal.network.grain_count();
     let ConnectedParts { surface: connected, boundaries } = ConnectedParts::of(surface);
     let mut surfaces_of = vec![Vec::new(); surface.parts.len()];

@@ -1,11 +1,11 @@
-//! Input files of Abaqus and CalculiX: tetrahedra that fill smooth grains, or each voxel a hexahedron, in the plane a square.
+//! Input files of Abaqus and CalculiX: tetrahedra that fill smooth grains, in the plane triangles; or each voxel a hexahedron, in the plane a square.
 //!
 //! Abaqus Analysis User's Guide, "Input syntax rules", "Solid (continuum) elements"; CalculiX CrunchiX User's Manual.
 
 pub(crate) mod deck;
+mod elements;
 mod equations;
 mod hexahedra;
-mod tetrahedra;
 
 use std::io::{self, Write};
 
@@ -18,7 +18,7 @@ use crate::{GrainAttributes, Polycrystal};
 /// A node and an element for each voxel, and its number in a set; or some three tetrahedra for each triangle, with half a node each.
 pub(super) const FORMAT: Format = Format {
     extension: "inp",
-    content: Content::Elements,
+    content: Content::ElementsOrVoxels,
     bytes: |size| match size.voxels() {
         0 => HEAD + (2 * TEXT_POINT + 4 * TEXT_CORNERS) * size.mesh.triangles,
         voxels => HEAD + (TEXT_POINT + 3 * TEXT_CORNERS) * voxels,
@@ -44,7 +44,7 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     if polycrystal.file().voxels.is_some() {
         return hexahedra::write(&polycrystal.label_grid()?, polycrystal, out);
     }
-    tetrahedra::write(polycrystal, polycrystal.tetrahedra()?, out)
+    elements::write(polycrystal, out)
 }
 
 /// The material of each phase, and the symmetry of its crystals.

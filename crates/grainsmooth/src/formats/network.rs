@@ -20,7 +20,7 @@ use crate::vtk::write_vtk;
 use crate::vtk::{Array, Cells, DataArray, FieldEntry, FieldValue, ItemTuples, PolyData, Values, VtkFormat};
 use crate::{
     GrainAttributes, GrainPhases, GrainTexture, LabelGrid, MeasuredAttributes, Names, Parents, Polycrystal,
-    Provenance, VolumeMesh,
+    Provenance,
 };
 
 impl Polycrystal {
@@ -33,15 +33,9 @@ impl Polycrystal {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
     }
 
-    /// The tetrahedra that fill the grains.
-    pub(crate) fn tetrahedra(&self) -> io::Result<&VolumeMesh> {
-        let unfilled = || io::Error::other("the grains are not filled; call `Polycrystal::filled` first");
-        self.volume_mesh.as_ref().ok_or_else(unfilled)
-    }
-
-    /// The same where formats that else hold boundaries are to hold them.
-    pub(crate) fn tetrahedra_instead_of_boundaries(&self) -> Option<&VolumeMesh> {
-        self.volume_mesh.as_ref().filter(|_| self.file().volume.volume_mesh)
+    /// Whether formats that else hold boundaries are to hold elements that fill grains.
+    pub(crate) fn writes_elements(&self) -> bool {
+        self.file().volume.volume_mesh && (self.volume_mesh.is_some() || self.plane_mesh.is_some())
     }
 
     /// The points that are others moved by whole periods: those of a periodic network, or, where it was cut at its box, those on the upper sides.
@@ -49,16 +43,22 @@ impl Polycrystal {
         self.network.periodic_vertices(&self.points, self.axes_cut_at_box()).map_err(io::Error::other)
     }
 
-    /// Tetrahedra of the order that files are to hold, and which of their nodes are others moved by whole periods.
-    pub(crate) fn elements<'a>(
-        &self,
-        mesh: &'a VolumeMesh,
-    ) -> io::Result<(ElementNodes<'a>, Vec<PeriodicPair<u32>>)> {
+    /// Elements that fill the grains, of the order that files are to hold, and which of their nodes are others moved by whole periods.
+    pub(crate) fn elements(&self) -> io::Result<(ElementNodes<'_>, Vec<PeriodicPair<u32>>)> {
+        let (linear, middles) = match (&self.volume_mesh, &self.plane_mesh) {
+            (Some(mesh), _) => (ElementNodes::from(mesh), &mesh.middles),
+            (None, Some(filled)) => (ElementNodes::from(&filled.mesh), &filled.mesh.middles),
+            (None, None) => {
+                return Err(io::Error::other(
+                    "the grains are not filled; call `Polycrystal::remeshed` and `Polycrystal::filled` first",
+                ));
+            }
+        };
         let mut pairs = self.periodic_points()?;
         if self.file().volume.order != Some(2) {
-            return Ok((ElementNodes::linear(mesh), pairs));
+            return Ok((linear, pairs));
         }
-        let mut elements = ElementNodes::quadratic(mesh);
+        let mut elements = linear.quadratic(middles);
         elements.tie_middles(&self.network, &mut pairs);
         Ok((elements, pairs))
     }

@@ -37,8 +37,10 @@ impl OutputFormat {
         Self(&super::npy::FORMAT),
         Self::INP,
         Self(&super::bdf::FORMAT),
+        Self(&super::xdmf::FORMAT),
         Self(&super::ang::FORMAT),
         Self(&super::ctf::FORMAT),
+        Self(&super::grain_table::FORMAT),
         Self(&super::euler::FORMAT),
         Self(&super::ori::FORMAT),
         Self(&super::material::FORMAT),
@@ -95,14 +97,30 @@ impl OutputFormat {
         matches!(self.0.content, Content::Voxels(_))
     }
 
-    /// Whether a file of the format holds tetrahedra that fill grains: always, or where they are asked for, or where no voxels are.
-    pub fn needs_tetrahedra(self, to_write: &ToWrite) -> bool {
+    /// Whether a file of the format holds elements that fill grains: always, or where they are asked for, or where no voxels are.
+    pub fn needs_elements(self, to_write: &ToWrite) -> bool {
         match self.0.content {
-            Content::Tetrahedra => true,
-            Content::Elements => !to_write.has_voxels,
-            Content::BoundariesOrTetrahedra => to_write.volume.volume_mesh,
-            Content::Boundaries | Content::Cells | Content::Voxels(_) | Content::Orientations => false,
+            Content::Elements => true,
+            Content::ElementsOrVoxels => !to_write.has_voxels,
+            Content::BoundariesOrElements => to_write.volume.volume_mesh,
+            Content::BoundariesElementsOrVoxels => to_write.volume.volume_mesh && !to_write.has_voxels,
+            Content::Boundaries
+            | Content::Cells
+            | Content::Voxels(_)
+            | Content::Orientations
+            | Content::Grains => false,
         }
+    }
+
+    /// Whether a file of the format holds voxels as elements where otherwise it would hold boundaries.
+    pub fn needs_voxel_elements(self, to_write: &ToWrite) -> bool {
+        let is_asked = to_write.volume.volume_mesh && to_write.has_voxels;
+        is_asked && matches!(self.0.content, Content::BoundariesElementsOrVoxels)
+    }
+
+    /// Whether elements in the plane have a state across it.
+    pub fn has_plane_state(self) -> bool {
+        matches!(self.0.content, Content::Elements | Content::ElementsOrVoxels)
     }
 
     /// Whether the format is a single file, as standard output takes.
@@ -147,19 +165,20 @@ impl OutputFormat {
     /// Checks that the format can hold what there is to write, for an output that messages call `path`.
     ///
     /// # Errors
-    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
+    /// [`Error::FormatDimension`]; [`Error::NoElementSize`] for triangles that fill grains in the plane, when elements have no size; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
     /// of orientations where grains have none; [`Error::CellsOfGrains`] for one of cells where grains are none.
     pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
-        let ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells, volume: _ } = *to_write;
+        let ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells, .. } = *to_write;
         let path = || path.to_owned();
+        let needs_elements = self.needs_elements(to_write);
         match (self.0.extra.dimension, self.0.content) {
-            (Some(only), _) if only != dimension => {
+            _ if needs_elements && dimension == Dimension::Two && !to_write.has_element_size => {
+                Err(Error::NoElementSize { path: path() })
+            }
+            (Some(only), _) if only != dimension && !needs_elements => {
                 Err(Error::FormatDimension { path: path(), dimension: only })
             }
             (_, Content::Voxels(_)) if !has_voxels && !has_map => Err(Error::NoVoxels { path: path() }),
-            (_, Content::Elements) if !has_voxels && dimension == Dimension::Two => {
-                Err(Error::NoVoxels { path: path() })
-            }
             (_, Content::Orientations) if !has_orientations => Err(Error::NoTexture { path: path() }),
             (_, Content::Cells) if !has_cells => Err(Error::CellsOfGrains { path: path() }),
             _ => Ok(()),
@@ -180,7 +199,9 @@ pub struct ToWrite {
     pub has_orientations: bool,
     /// Whether each grain is a convex cell.
     pub has_cells: bool,
-    /// What is asked of tetrahedra.
+    /// Whether elements have a size.
+    pub has_element_size: bool,
+    /// What is asked of elements that fill grains.
     pub volume: VolumeMeshOptions,
 }
 
@@ -193,6 +214,7 @@ impl Config {
             has_map: false,
             has_orientations: self.has_texture(),
             has_cells: !self.has_grains_of_several_cells(),
+            has_element_size: self.elements.are_asked(),
             volume: self.file.volume,
         }
     }

@@ -4,6 +4,7 @@ use super::format::{Content, Extra, Format, Writer};
 use super::grains::write_vtk_grain;
 use super::volume_vtu;
 use crate::vtk::VtkFormat;
+use crate::{FileOptions, VolumeMeshOptions};
 
 /// The share of their bytes that compressed networks take: coordinates hardly repeat. 200 random grains took 0.55 at level 3.
 pub(super) const COMPRESSED: [u128; 2] = [11, 20];
@@ -18,11 +19,14 @@ pub(super) const VTP: Format = Format {
 
 pub(super) const VTU: Format = Format {
     extension: "vtu",
-    content: Content::BoundariesOrTetrahedra,
+    content: Content::BoundariesElementsOrVoxels,
     bytes: |size| size.encoded(size.of_network() + size.mesh.triangles, COMPRESSED),
-    write: Writer::File(|polycrystal, out| match polycrystal.tetrahedra_instead_of_boundaries() {
-        Some(mesh) => volume_vtu::write(polycrystal, mesh, out),
-        None => polycrystal.write_vtk(VtkFormat::Vtu, out),
+    write: Writer::File(|polycrystal, out| match polycrystal.file() {
+        FileOptions { voxels: Some(_), volume: VolumeMeshOptions { volume_mesh: true, .. }, .. } => {
+            volume_vtu::write_voxels(polycrystal, out)
+        }
+        _ if polycrystal.writes_elements() => volume_vtu::write(polycrystal, out),
+        _ => polycrystal.write_vtk(VtkFormat::Vtu, out),
     }),
     extra: Extra::NONE,
 };

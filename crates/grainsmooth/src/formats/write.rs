@@ -21,6 +21,7 @@ impl Polycrystal {
             has_map: self.voxels_of_map().is_some(),
             has_orientations: self.grains().texture.is_some(),
             has_cells: self.synthesis().is_some_and(|made| !made.config.has_grains_of_several_cells()),
+            has_element_size: self.elements.is_some(),
             volume: self.file().volume,
         }
     }

@@ -20,6 +20,8 @@ pub(super) struct Patch {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The edges at its rim.
     pub(super) rim: Vec<[u32; 2]>,
+    /// The edges inside it, where its triangles are elements of a size.
+    pub(super) element_edges: Vec<[u32; 2]>,
 }
 
 /// What can be seen of a network.
@@ -62,7 +64,12 @@ pub(super) fn patches(
         let grain = sides[part][side]?;
         let shift = explode * (pieces.centers[pieces.of_sides[part][side]?] - middle);
         let is_facet = |ends: [u32; 2]| facets.binary_search(&(grain, ends)).is_ok();
-        Some(Patch::new(&surface, &surface.parts[part], side == 1, (grain as usize, shift), is_facet))
+        let mut patch =
+            Patch::new(&surface, &surface.parts[part], side == 1, (grain as usize, shift), is_facet);
+        if polycrystal.elements.is_some() {
+            patch.element_edges = edges(&patch.triangles, 2);
+        }
+        Some(patch)
     };
     Ok(both_sides.into_par_iter().filter_map(patch).collect())
 }
@@ -77,7 +84,7 @@ impl Patch {
     ) -> Self {
         let turned = |[a, b, c]: [u32; 3]| if is_second { [a, c, b] } else { [a, b, c] };
         let mut triangles: Vec<[u32; 3]> = surface.triangles_of(part).map(turned).collect();
-        let mut rim = rim(&triangles);
+        let mut rim = edges(&triangles, 1);
         rim.retain(|ends| !is_facet(*ends));
         let mut ids: Vec<u32> = triangles.iter().flatten().copied().collect();
         ids.sort_unstable();
@@ -96,14 +103,22 @@ impl Patch {
             triangle.iter().for_each(|point| normals[*point as usize] += normal);
         }
         normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-        Self { grain, boundary: part.boundary.index(), points, normals, triangles, rim }
+        Self {
+            grain,
+            boundary: part.boundary.index(),
+            points,
+            normals,
+            triangles,
+            rim,
+            element_edges: Vec::new(),
+        }
     }
 }
 
-/// The edges that one triangle has.
-fn rim(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+/// The edges that so many triangles have.
+fn edges(triangles: &[[u32; 3]], count: usize) -> Vec<[u32; 2]> {
     let edges = triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
     edges.sort_unstable();
-    edges.chunk_by(|a, b| a == b).filter(|uses| uses.len() == 1).map(|uses| uses[0]).collect()
+    edges.chunk_by(|a, b| a == b).filter(|uses| uses.len() == count).map(|uses| uses[0]).collect()
 }

@@ -1,6 +1,7 @@
 //! Pictures of grains in the plane.
 
 use glam::DVec3;
+use polycrystal::PlaneMesh;
 use subzero::CurveMesh;
 use tiny_skia::{
     Color as Ink, FillRule, LineCap, Paint as Brush, Path, PathBuilder, Pixmap, Stroke, Transform,
@@ -9,6 +10,7 @@ use tiny_skia::{
 use super::Picture;
 use super::color::Color;
 use super::coloring::Paint;
+use super::raster::ELEMENT_EDGE;
 use crate::Polycrystal;
 
 /// Width of a coloured line, in widths of a black one: colours of thin lines cannot be told apart.
@@ -64,6 +66,14 @@ pub(super) fn draw(
             pixmap.fill_path(path, &ink(*color), FillRule::EvenOdd, Transform::identity(), None);
         }
     }
+    if let Some(filled) = &polycrystal.plane_mesh {
+        let edges =
+            ElementEdges { mesh: &filled.mesh, shifts: &shifts, center, scale, size: [width, height] };
+        let stroke = Stroke { width: single(ELEMENT_EDGE) * stroke.width, ..stroke.clone() };
+        if let Some(path) = edges.path() {
+            pixmap.stroke_path(&path, &ink([0.1; 3]), &stroke, Transform::identity(), None);
+        }
+    }
     // After all fills, which would cover half of a line.
     let Some(of_boundaries) = &paint.boundaries else {
         for path in paths.iter().flatten() {
@@ -84,6 +94,32 @@ pub(super) fn draw(
                 pixmap.stroke_path(&path, &ink, &stroke, Transform::identity(), None);
             }
         }
+    }
+}
+
+/// The edges of triangles that fill grains, on a picture.
+struct ElementEdges<'a> {
+    mesh: &'a PlaneMesh,
+    /// By which grains are moved.
+    shifts: &'a [DVec3],
+    center: DVec3,
+    scale: f64,
+    size: [f64; 2],
+}
+
+impl ElementEdges<'_> {
+    fn path(&self) -> Option<Path> {
+        let mut path = PathBuilder::new();
+        for (triangle, grain) in self.mesh.grains.iter().enumerate() {
+            let places = self.mesh.corners(triangle).map(|corner| {
+                let place = (corner + self.shifts[grain.index()] - self.center) * self.scale;
+                [single(self.size[0] / 2.0 + place.x), single(self.size[1] / 2.0 - place.y)]
+            });
+            path.move_to(places[0][0], places[0][1]);
+            places[1..].iter().for_each(|[x, y]| path.line_to(*x, *y));
+            path.close();
+        }
+        path.finish()
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) const LINE: Color = [0.1; 3];
 /// Sides of a disc, which is a polygon: a circle at the size of points.
 const DISC_SIDES: u32 = 16;
 
+/// Width of the edges of elements, in widths of other lines.
+pub(super) const ELEMENT_EDGE: f64 = 0.35;
+
 /// How much nearer than the far side of a wall its near side counts, in samples: both have the same place but for rounding.
 const NEAR_SIDE: f64 = 1e-3;
 
@@ -239,11 +242,13 @@ impl Band {
         }
     }
 
-    /// Draws the edges at the rim of a patch, and where the plane cuts it.
+    /// Draws the edges of a patch's elements, those at its rim, and where the plane cuts it.
     fn draw_rim(&mut self, patch: &Patch, shown: &Shown, half_width: f64) {
-        for edge in &patch.rim {
-            let ends = edge.map(|point| shown.places[point as usize]);
-            self.draw_cut_line((ends, shown.beyond(*edge)), half_width, LINE);
+        for (edges, width) in [(&patch.element_edges, ELEMENT_EDGE * half_width), (&patch.rim, half_width)] {
+            for edge in edges {
+                let ends = edge.map(|point| shown.places[point as usize]);
+                self.draw_cut_line((ends, shown.beyond(*edge)), width, LINE);
+            }
         }
         for triangle in &patch.triangles {
             let Some(beyond) = shown.beyond(*triangle) else { return };

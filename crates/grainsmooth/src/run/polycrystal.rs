@@ -14,8 +14,10 @@ use super::origin::{Measurement, Origin, Synthesis};
 use super::stage::Stage;
 use super::topology::Topology;
 use crate::volume_mesh::VolumeMesh;
+use crate::volume_mesh::filled_plane::FilledPlane;
 use crate::{
-    Error, Failure, FileOptions, GrainAttributes, LawReached, PeriodicCut, Provenance, TensionsReached,
+    CurvedEdges, Error, Failure, FileOptions, GrainAttributes, LawReached, PeriodicCut, Provenance,
+    TensionsReached,
 };
 
 /// A finished polycrystal: a valid network with the points of its finest level.
@@ -45,6 +47,8 @@ pub struct Polycrystal {
     pub middles: Option<EdgeMiddles>,
     /// Tetrahedra that fill the grains, where these were filled.
     pub volume_mesh: Option<VolumeMesh>,
+    /// In the plane, triangles that fill the grains, where elements have a size.
+    pub plane_mesh: Option<FilledPlane>,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -71,6 +75,7 @@ impl Polycrystal {
             elements: None,
             middles: None,
             volume_mesh: None,
+            plane_mesh: None,
             times: Vec::new(),
         }
     }
@@ -158,13 +163,22 @@ impl Polycrystal {
 
     /// The axes across which grains of a periodic box are cut at it in the end.
     pub fn axes_cut_at_box(&self) -> BVec3 {
-        match &self.origin {
+        let is_plane = self.dimension() == Dimension::Two;
+        let axes = match &self.origin {
             Origin::Synthetic(synthesis) => match synthesis.config.periodic_cut {
                 PeriodicCut::Box => synthesis.config.periodic,
                 PeriodicCut::Wrap => BVec3::FALSE,
             },
             Origin::Measured(measurement) => measurement.cut,
-        }
+        };
+        // The third axis has no meaning in the plane.
+        BVec3::new(axes.x, axes.y, axes.z && !is_plane)
+    }
+
+    /// What became of the edges on boundaries of elements of second order.
+    pub(crate) fn curved_edges(&self) -> Option<CurvedEdges> {
+        let in_space = self.volume_mesh.as_ref().and_then(|mesh| mesh.curved);
+        in_space.or_else(|| self.plane_mesh.as_ref().and_then(|filled| filled.curved))
     }
 
     /// How often the mesh of the cells was subdivided.

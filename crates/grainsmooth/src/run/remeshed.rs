@@ -3,10 +3,12 @@
 use std::time::Instant;
 
 use polycrystal::{ElementSize, Remeshed};
+use voronoi::Dimension;
 
 use super::elements_reached::ElementsReached;
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
+use crate::volume_mesh::filled_plane::FilledPlane;
 use crate::{ElementOptions, Error};
 
 /// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
@@ -49,7 +51,8 @@ impl Polycrystal {
         let Some(length) = options.element_size.or(per_grain) else { return Ok(self) };
         let start = Instant::now();
         let mean = self.network.mean_edge_length(&self.points);
-        if mean > LONGEST * length {
+        // Lines in the plane are straight between their points, or as fine as they curve.
+        if self.dimension() == Dimension::Three && mean > LONGEST * length {
             let more = more_levels(mean / (LONGEST * length));
             if self.synthesis().is_some() {
                 return Err(Error::CoarseReference { mean, length, levels: self.level() + more });
@@ -63,8 +66,13 @@ impl Polycrystal {
         let size = ElementSize { length, growth, of_radius: options.adapt_curvature, has_middles };
         let cut = self.axes_cut_at_box();
         match self.network.remeshed(&self.points, &size, cut) {
-            Ok(Remeshed { network, points, certificate, refinements, middles }) => {
+            Ok(Remeshed { network, points, certificate, refinements, middles, triangles }) => {
                 let mean_edge = network.mean_edge_length(&points);
+                self.plane_mesh = match (triangles, &middles) {
+                    (Some(mesh), Some(middles)) => Some(FilledPlane::curved(mesh, &network, middles.clone())),
+                    (Some(mesh), None) => Some(FilledPlane { mesh, curved: None }),
+                    (None, _) => None,
+                };
                 self.elements = Some(ElementsReached { size: length, mean_edge, refinements });
                 // Angles stay those of the smooth boundaries, as they were before they were stretched.
                 self.validation.triangles = certificate.triangles;

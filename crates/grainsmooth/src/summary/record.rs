@@ -10,8 +10,8 @@ use crate::figures::spread::Spread;
 use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, CellFit, ComponentShare, CurvedEdges, Divided, ElementsReached, EquivalentDiameters,
-    HistogramFit, LawReached, PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached,
-    TensionsReached, TetrahedronQuality, Topology, VolumeMesh,
+    FilledPlane, HistogramFit, LawReached, PhaseShare, PlaneQuality, Polycrystal, Reconnected, ShapesReached,
+    SizesFit, SizesReached, TensionsReached, TetrahedronQuality, Topology, VolumeMesh,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -69,6 +69,8 @@ pub struct SummaryRecord {
     element_size: Option<ElementsReached>,
     /// Of grains that are filled.
     tetrahedra: Option<TetrahedronQuality>,
+    /// Of grains that are filled in the plane.
+    filled: Option<PlaneQuality>,
     /// Of elements of second order on the smooth surface.
     curved_edges: Option<CurvedEdges>,
     /// In degrees.
@@ -248,7 +250,8 @@ impl SummaryRecord {
             level: polycrystal.level(),
             element_size: polycrystal.elements,
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
-            curved_edges: polycrystal.volume_mesh.as_ref().and_then(|mesh| mesh.curved),
+            filled: polycrystal.plane_mesh.as_ref().and_then(FilledPlane::quality),
+            curved_edges: polycrystal.curved_edges(),
             angles_before: synthesis.and_then(|made| made.angles_before).map(Spread::from),
             angles_after: polycrystal.validation.angles.map(Spread::from),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),

@@ -2,62 +2,65 @@
 
 use std::collections::BTreeMap;
 
-use polycrystal::{BoundaryId, GrainId, Mesh, Network, Side};
+use glam::DVec3;
+use polycrystal::{BoundaryId, Corners, GrainId, Network, Side};
 use voronoi::{PeriodicPair, Translation};
 
-use super::VolumeMesh;
+use super::element_nodes::ElementNodes;
+use super::element_shape::boundary_elements;
 
-/// Tetrahedra whose grains share no nodes, and prisms without thickness on all boundaries between grains.
+/// Elements whose grains share no nodes, and cohesive elements on all boundaries between grains.
 #[derive(Debug)]
-pub(crate) struct CohesiveMesh {
-    /// The tetrahedra by the same numbers. Of the nodes at a point of a boundary, that of the smallest grain has the number of the point; the others follow behind all points.
-    pub(crate) mesh: VolumeMesh,
-    /// Prisms, boundary by boundary.
-    pub(crate) prisms: Vec<Prism>,
+pub(crate) struct CohesiveMesh<'a> {
+    /// The elements by the same numbers. Of the nodes at a point of a boundary, that of the smallest grain has the number of the point; the others follow behind all points.
+    pub(crate) elements: ElementNodes<'a>,
+    /// Elements between grains, boundary by boundary.
+    pub(crate) joints: Vec<Joint>,
     /// Nodes that move as others, whole periods away: no node is both.
     pub(crate) ties: Vec<PeriodicPair<u32>>,
 }
 
-/// An element between two grains.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Prism {
-    /// A triangle of the grain with the smaller number, whose normal points to the other grain, and that of the other grain, in the same order.
-    pub(crate) nodes: [u32; 6],
+/// An element of zero thickness between two grains: a prism, in the plane a quadrilateral.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Joint {
+    /// In space a triangle of the grain with the smaller number, whose normal points to the other grain, and that of the other grain, in the same order. In the plane a segment of the
+    /// first, with the other grain on its left, and back along that of the other.
+    pub(crate) nodes: Vec<u32>,
     /// The boundary; of two that are one, a period apart, the original.
     pub(crate) boundary: BoundaryId,
 }
 
 /// The nodes of grains at the points of a network.
 struct Nodes {
-    mesh: VolumeMesh,
+    points: Vec<DVec3>,
+    /// Of all elements, one after the other.
+    of_elements: Vec<u32>,
     of: BTreeMap<(u32, GrainId), u32>,
 }
 
 impl Nodes {
-    fn new(mesh: &VolumeMesh) -> Self {
-        let mut nodes = Self { mesh: mesh.clone(), of: BTreeMap::new() };
-        let is_at_boundary = |corner: &u32| (*corner as usize) < mesh.surface_points;
-        // The smallest grain comes first.
-        for (corners, grain) in mesh.tetrahedra.iter().zip(&mesh.grains) {
+    fn new(elements: &ElementNodes<'_>) -> Self {
+        let mut of: BTreeMap<(u32, GrainId), u32> = BTreeMap::new();
+        let is_at_boundary = |corner: &u32| (*corner as usize) < elements.boundary_points;
+        for (corners, grain) in elements.iter().zip(elements.grains) {
             for corner in corners.iter().copied().filter(is_at_boundary) {
-                nodes.of.entry((corner, *grain)).or_insert(corner);
+                of.entry((corner, *grain)).or_insert(corner);
             }
         }
+        // The smallest grain comes first.
         let mut last = None;
-        let mut copied = Vec::new();
-        for ((point, _), node) in &mut nodes.of {
+        let mut points = elements.points.to_vec();
+        for ((point, _), node) in &mut of {
             if last.replace(*point) == Some(*point) {
-                *node = number(mesh.points.len() + copied.len());
-                copied.push(mesh.points[*point as usize]);
+                *node = number(points.len());
+                points.push(points[*point as usize]);
             }
         }
-        nodes.mesh.points.extend(copied);
-        for (corners, grain) in nodes.mesh.tetrahedra.iter_mut().zip(&mesh.grains) {
-            for corner in corners.iter_mut() {
-                *corner = nodes.of.get(&(*corner, *grain)).copied().unwrap_or(*corner);
-            }
-        }
-        nodes
+        let own = |(corners, grain): (&[u32], &GrainId)| -> Vec<u32> {
+            corners.iter().map(|corner| of.get(&(*corner, *grain)).copied().unwrap_or(*corner)).collect()
+        };
+        let of_elements = elements.iter().zip(elements.grains).flat_map(own).collect();
+        Self { points, of_elements, of }
     }
 
     fn at(&self, point: u32, grain: GrainId) -> u32 {
@@ -65,49 +68,54 @@ impl Nodes {
     }
 }
 
-impl CohesiveMesh {
-    /// Parts the grains of a network and puts prisms between them. `pairs` are the points of the network that are others moved by whole periods.
+impl<'a> CohesiveMesh<'a> {
+    /// Parts the grains of a network and puts elements between them. `pairs` are the points of the network that are others moved by whole periods.
     ///
-    /// Between grains a period apart the prisms stand at the original of the boundary; nodes of their own stand in for those of the grain beyond.
-    pub(crate) fn new(mesh: &VolumeMesh, network: &Network, pairs: &[PeriodicPair<u32>]) -> Self {
-        let mut nodes = Nodes::new(mesh);
-        let mut prisms = Vec::new();
-        let mut stand_ins = StandIns::new(mesh.surface_points, pairs);
+    /// Between grains a period apart the elements stand at the original of the boundary; nodes of their own stand in for those of the grain beyond.
+    pub(crate) fn new(elements: &ElementNodes<'a>, network: &Network, pairs: &[PeriodicPair<u32>]) -> Self {
+        let mut nodes = Nodes::new(elements);
+        let mut joints = Vec::new();
+        let mut stand_ins = StandIns::new(elements.boundary_points, pairs);
         let level = network.finest_level();
         let boundaries = network.boundaries();
-        if let Mesh::Triangles(triangles) = &level.mesh {
-            let mut order: Vec<(BoundaryId, [u32; 3])> =
-                level.boundary_of.iter().copied().zip(triangles.triangles().iter().copied()).collect();
-            order.sort_by_key(|(boundary, _)| *boundary);
-            for (id, corners) in order {
-                let boundary = &boundaries[id.index()];
-                let Side::Grain(first) = boundary.sides[0] else { continue };
-                let (second, upper) = match (boundary.sides[1], boundary.twin) {
-                    (Side::Grain(second), _) => (second, corners.map(|corner| nodes.at(corner, second))),
-                    (Side::Exterior, Some(twin)) if id < twin.boundary => {
-                        let Side::Grain(second) = boundaries[twin.boundary.index()].sides[0] else {
-                            continue;
-                        };
-                        (
-                            second,
-                            corners
-                                .map(|corner| stand_ins.node(&mut nodes, corner, second, twin.translation)),
-                        )
-                    }
-                    _ => continue,
-                };
-                let lower = corners.map(|corner| nodes.at(corner, first));
-                // A normal points away from the first side.
-                let [[a, b, c], [d, e, f]] = [lower, upper];
-                let prism = if first <= second { [a, b, c, d, e, f] } else { [d, f, e, a, c, b] };
-                prisms.push(Prism { nodes: prism, boundary: id });
-            }
+        let mut order: Vec<(BoundaryId, Corners)> = boundary_elements(&level).collect();
+        order.sort_by_key(|(boundary, _)| *boundary);
+        for (id, corners) in order {
+            let boundary = &boundaries[id.index()];
+            let Side::Grain(first) = boundary.sides[0] else { continue };
+            let (second, upper): (GrainId, Vec<u32>) = match (boundary.sides[1], boundary.twin) {
+                (Side::Grain(second), _) => {
+                    (second, corners.iter().map(|corner| nodes.at(*corner, second)).collect())
+                }
+                (Side::Exterior, Some(twin)) if id < twin.boundary => {
+                    let Side::Grain(second) = boundaries[twin.boundary.index()].sides[0] else { continue };
+                    let mut stand_in =
+                        |corner: &u32| stand_ins.node(&mut nodes, *corner, second, twin.translation);
+                    (second, corners.iter().map(&mut stand_in).collect())
+                }
+                _ => continue,
+            };
+            let lower: Vec<u32> = corners.iter().map(|corner| nodes.at(*corner, first)).collect();
+            joints.push(Joint { nodes: joined(&lower, &upper, first <= second), boundary: id });
         }
         let mut ties = stand_ins.ties();
         if ties.is_empty() {
             ties = within_grains(&nodes, pairs);
         }
-        Self { mesh: nodes.mesh, prisms, ties }
+        Self { elements: elements.between(nodes.points, nodes.of_elements), joints, ties }
+    }
+}
+
+/// The nodes of a cohesive element between those on the first side of a boundary and those on its second one. The normal of three points away from the first side; the first side lies on the
+/// left of two.
+fn joined(lower: &[u32], upper: &[u32], is_first_smaller: bool) -> Vec<u32> {
+    match (lower, upper, is_first_smaller) {
+        (&[a, b], &[c, d], true) => vec![b, a, c, d],
+        (&[a, b], &[c, d], false) => vec![c, d, b, a],
+        (_, _, true) => [lower, upper].concat(),
+        (_, _, false) => {
+            [upper, lower].concat().chunks(3).flat_map(|side| [side[0], side[2], side[1]]).collect()
+        }
     }
 }
 
@@ -150,8 +158,8 @@ impl StandIns {
         let (original, from) = self.places[point as usize];
         let node = nodes.at(self.points[&(original, from + translation)], grain);
         *self.nodes.entry((node, Translation::ZERO - translation)).or_insert_with(|| {
-            nodes.mesh.points.push(nodes.mesh.points[point as usize]);
-            number(nodes.mesh.points.len() - 1)
+            nodes.points.push(nodes.points[point as usize]);
+            number(nodes.points.len() - 1)
         })
     }
 

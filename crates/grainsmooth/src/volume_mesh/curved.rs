@@ -7,12 +7,13 @@ use glam::{DMat3, DVec3};
 use polycrystal::{EdgeMiddles, Mesh, Network};
 use subzero::EdgeId;
 
-use super::element_nodes::{EDGES, sorted};
+use super::element_nodes::sorted;
+use super::element_shape::EDGES;
 use super::{CurvedEdges, VolumeMesh};
 
 /// The Jacobian determinant that an element must have everywhere, as a share of what it is with straight edges. Of 200 grains with five elements to a diameter fewer than
 /// 2 in 1000 edges became straight for it.
-const LEAST: f64 = 0.2;
+pub(super) const LEAST: f64 = 0.2;
 
 /// The middle between two corners, by its number in [`EDGES`].
 const MIDDLES: [[usize; 4]; 4] = [[0, 0, 2, 3], [0, 1, 1, 4], [2, 1, 2, 5], [3, 4, 5, 3]];

@@ -45,9 +45,7 @@ pub(super) fn write(data: &PolyData<'_>, out: &mut dyn Write) -> io::Result<()> 
             let cell = |index: usize| [1, index as u32];
             ("VERTICES", Numbers::each(count, cell))
         }
-        Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {
-            return Err(io::Error::other("PolyData holds no tetrahedra"));
-        }
+        Cells::Elements(..) => return Err(io::Error::other("PolyData holds no finite elements")),
     };
     write!(out, "\n\n{keyword} {} {numbers_of_cells}\n", data.cells.len())?;
     cells.write_big_endian(size_of::<u32>(), out)?;

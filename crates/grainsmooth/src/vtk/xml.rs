@@ -26,8 +26,8 @@ pub(super) fn write(
     encoding: VtkEncoding,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    if format == XmlFormat::PolyData && data.cells.are_solids() {
-        return Err(io::Error::other("PolyData holds no tetrahedra; write an unstructured grid"));
+    if format == XmlFormat::PolyData && data.cells.are_elements() {
+        return Err(io::Error::other("PolyData holds no finite elements; write an unstructured grid"));
     }
     let mut numbers = NumbersOfFile::new(encoding);
     let document = document::document(data, format, &mut numbers);

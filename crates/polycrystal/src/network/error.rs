@@ -132,9 +132,11 @@ pub enum NetworkError {
         "with elements of that size the network is invalid: {0}; give another size, or more levels of subdivision"
     )]
     RemeshInvalid(Faults),
-    /// Remeshing in the plane.
-    #[error("2D networks are not remeshed; more levels give their lines more points")]
-    RemeshPlane,
+    /// In the plane, lines between which there are no triangles.
+    #[error(
+        "lines cross, or touch each other between their points, so that no triangles fit between them; give more levels of subdivision"
+    )]
+    LinesCross,
     /// Opposite walls of a periodic network that was cut at its box differ.
     #[error(
         "point {point} on a wall has no copy on the opposite one; cut whole grains at the box, and remesh the result"

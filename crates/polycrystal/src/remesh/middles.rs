@@ -25,7 +25,7 @@ use crate::{Boundary, BoundaryId, Mesh, Network, WallSet};
 /// A point in the middle of each edge of a remeshed network: with it edges are parabolas, and triangles parts of quadratic surfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EdgeMiddles {
-    /// One for each edge of the finest level's mesh, by its number, in the unit of the domain.
+    /// One for each edge of the finest level's mesh, by its number, in the unit of the domain; in the plane one for each segment.
     points: Vec<DVec3>,
     /// The edge that each is a copy of, and the periods from there; itself where it is none.
     originals: Vec<Moved<u32>>,
@@ -34,7 +34,27 @@ pub struct EdgeMiddles {
     is_straight: Vec<bool>,
 }
 
+/// The middle of a segment of a line.
+pub(crate) struct LineMiddle {
+    pub(crate) ends: [Moved<u32>; 2],
+    pub(crate) place: DVec3,
+    pub(crate) walls: WallSet,
+}
+
 impl EdgeMiddles {
+    /// The middles of all segments of a network in the plane, in their order.
+    pub(crate) fn of_lines(network: &Network, middles: Vec<LineMiddle>) -> Self {
+        let ends: Vec<[Moved<u32>; 2]> = middles.iter().map(|middle| middle.ends).collect();
+        let mut of_lines = Self {
+            originals: originals(ends.into_iter()),
+            points: middles.iter().map(|middle| middle.place).collect(),
+            walls: middles.iter().map(|middle| middle.walls).collect(),
+            is_straight: vec![false; middles.len()],
+        };
+        of_lines.put_on_walls(network);
+        of_lines
+    }
+
     /// The middles of lines along the smooth lines; within boundaries the points of the smooth surface that are nearest to the middles of straight edges.
     pub(crate) fn new(
         assembled: &Assembled,
@@ -59,13 +79,7 @@ impl EdgeMiddles {
         }
         let references = references(around, boundaries);
 
-        let mut known: BTreeMap<[Moved<u32>; 2], (u32, Translation)> = BTreeMap::new();
-        let mut originals = Vec::with_capacity(mesh.edge_count());
-        for (edge, ends) in (0u32..).zip(mesh.edges()) {
-            let (key, from) = seen_from_least(ends.map(|end| assembled.originals[end as usize]));
-            let (original, there) = *known.entry(key).or_insert((edge, from));
-            originals.push(Moved { original, translation: from - there });
-        }
+        let originals = originals(mesh.edges().map(|ends| ends.map(|end| assembled.originals[end as usize])));
         // Of an edge on no line all triangles are of one boundary.
         let mut boundary_of_edges = vec![0; mesh.edge_count()];
         for (triangle, boundary) in (0u32..).zip(&level.boundary_of) {
@@ -106,11 +120,14 @@ impl EdgeMiddles {
     /// When there are no such edges or points.
     pub fn straighten(&mut self, network: &Network, points: &[DVec3], edges: impl Iterator<Item = EdgeId>) {
         let level = network.finest_level();
-        let Mesh::Triangles(mesh) = &level.mesh else { return };
+        let ends = |edge: u32| match &level.mesh {
+            Mesh::Triangles(mesh) => mesh.edge(EdgeId(edge)),
+            Mesh::Segments(mesh) => mesh.segments()[edge as usize],
+        };
         for edge in edges {
             let original = self.originals[edge.index()].original;
             self.is_straight[original as usize] = true;
-            let [from, to] = mesh.edge(EdgeId(original)).map(|end| points[end as usize]);
+            let [from, to] = ends(original).map(|end| points[end as usize]);
             self.points[original as usize] = from.midpoint(to);
         }
         self.put_on_walls(network);
@@ -142,7 +159,10 @@ impl EdgeMiddles {
     /// When the network or its points are others than those that the middles were made for.
     pub fn grain_volumes(&self, network: &Network, points: &[DVec3]) -> Vec<f64> {
         let level = network.finest_level();
-        let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+        let mesh = match &level.mesh {
+            Mesh::Triangles(mesh) => mesh,
+            Mesh::Segments(mesh) => return self.grain_areas(network, mesh.segments(), points),
+        };
         let boundary_count = network.boundaries().len();
         let triangles = triangles_of_boundaries(boundary_count, &level.boundary_of);
         let cone = |boundary: usize| {
@@ -174,7 +194,10 @@ impl EdgeMiddles {
     /// How the volumes of grains grow as each original moves, which stands for its copies.
     fn moving_points(&self, network: &Network, points: &[DVec3]) -> Vec<MovingPoint> {
         let level = network.finest_level();
-        let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+        let mesh = match &level.mesh {
+            Mesh::Triangles(mesh) => mesh,
+            Mesh::Segments(mesh) => return self.moving_on_lines(network, mesh.segments(), points),
+        };
         let mut moving = vec![MovingPoint::default(); self.points.len()];
         for (triangle, boundary) in (0u32..).zip(&level.boundary_of) {
             let edges = mesh.triangle_edges(FaceId(triangle));
@@ -198,6 +221,45 @@ impl EdgeMiddles {
         moving
     }
 
+    /// In the plane, the area of each grain within parabolas.
+    fn grain_areas(&self, network: &Network, segments: &[[u32; 2]], points: &[DVec3]) -> Vec<f64> {
+        let level = network.finest_level();
+        let mut areas = network.grain_volumes(&*level, points);
+        for (([from, to], middle), boundary) in segments.iter().zip(&self.points).zip(&level.boundary_of) {
+            let [from, to] = [from, to].map(|end| points[*end as usize]);
+            // A parabola encloses two thirds of the parallelogram around it with its chord.
+            let bulge = 2.0 / 3.0 * (*middle - from.midpoint(to)).dot((to - from).cross(DVec3::Z));
+            for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
+                areas[grain.index()] += sign * bulge;
+            }
+        }
+        areas
+    }
+
+    /// As of [`Self::moving_points`] in the plane.
+    fn moving_on_lines(
+        &self,
+        network: &Network,
+        segments: &[[u32; 2]],
+        points: &[DVec3],
+    ) -> Vec<MovingPoint> {
+        let level = network.finest_level();
+        let mut moving = vec![MovingPoint::default(); self.points.len()];
+        for (segment, ([from, to], boundary)) in segments.iter().zip(&level.boundary_of).enumerate() {
+            let original = self.originals[segment].original as usize;
+            if self.is_straight[original] {
+                continue;
+            }
+            let normal = (points[*to as usize] - points[*from as usize]).cross(DVec3::Z) * (2.0 / 3.0);
+            moving[original].weight += normal.length();
+            for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
+                *moving[original].gradients.entry(grain.0).or_default() += normal * sign;
+            }
+        }
+        hold_on_walls(network, &mut moving, self.originals.iter().zip(&self.walls));
+        moving
+    }
+
     /// Puts originals on their walls, and copies where their translations lead.
     fn put_on_walls(&mut self, network: &Network) {
         let (domain, sets) = (network.domain(), network.wall_sets());
@@ -211,6 +273,17 @@ impl EdgeMiddles {
             self.points[edge] = sets.put_on_walls(self.walls[edge], place);
         }
     }
+}
+
+/// Of edges by their ends, the first that is the same on the torus, and the periods from there.
+fn originals(edges: impl Iterator<Item = [Moved<u32>; 2]>) -> Vec<Moved<u32>> {
+    let mut known: BTreeMap<[Moved<u32>; 2], (u32, Translation)> = BTreeMap::new();
+    let moved = |(edge, ends): (u32, [Moved<u32>; 2])| {
+        let (key, from) = seen_from_least(ends);
+        let (original, there) = *known.entry(key).or_insert((edge, from));
+        Moved { original, translation: from - there }
+    };
+    (0u32..).zip(edges).map(moved).collect()
 }
 
 /// The smooth surface of each boundary; none of walls, which are flat.

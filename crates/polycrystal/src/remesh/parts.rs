@@ -30,6 +30,13 @@ impl Parts {
         torus: &Torus,
         boundaries: &[Boundary],
     ) -> Result<Self, NetworkError> {
+        let parts = Self::without_copies((level, mesh), skeleton);
+        let copies = copies(mesh, torus, &parts.triangles, &parts.boundaries, boundaries)?;
+        Ok(Self { copies, ..parts })
+    }
+
+    /// Parts that each stand for themselves.
+    pub(crate) fn without_copies((level, mesh): (&Level, &TriangleMesh), skeleton: &Skeleton) -> Self {
         let mut pieces = DisjointSets::new(level.element_count());
         for (edge, line) in (0u32..).zip(&skeleton.of_edge) {
             if let (None, Some([a, b])) =
@@ -49,8 +56,7 @@ impl Parts {
             part_of.push(part);
         }
         let triangles = Grouped::new(of_parts.len(), part_of.iter().copied().zip(0u32..));
-        let copies = copies(mesh, torus, &triangles, &of_parts, boundaries)?;
-        Ok(Self { triangles, boundaries: of_parts, copies })
+        Self { copies: vec![None; of_parts.len()], triangles, boundaries: of_parts }
     }
 
     /// The parts that stand for themselves.

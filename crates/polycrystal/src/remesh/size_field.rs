@@ -30,6 +30,8 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) torus: &'a Torus,
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) parts: &'a Parts,
+    /// Whether all triangles lie in the plane, so that boundaries are lines.
+    pub(crate) is_plane: bool,
 }
 
 impl SizeField {
@@ -43,7 +45,11 @@ impl SizeField {
         let gradation = Gradation { growth: asked.growth, most: asked.length };
         let mut field = Self { sizes: vec![asked.length; around.points.len()], gradation };
         if let Some(share) = asked.of_radius {
-            field.limit_by_curvature(around, share, asked.length * tuning.smallest_share);
+            let floor = asked.length * tuning.smallest_share;
+            field.limit_by_curvature(around, share, floor);
+            if around.is_plane {
+                field.limit_by_curvature_of_lines(around, share, floor);
+            }
         }
         field.limit_on_lines(around, asked.length);
         field.limit_between_lines(around, asked.length, tuning);
@@ -143,6 +149,22 @@ impl SizeField {
                     .edge(EdgeId(edge))
                     .iter()
                     .for_each(|end| self.lower(around.torus, *end as usize, limit));
+            }
+        }
+    }
+
+    /// No size on a line is more than a share of its radius of curvature, as its steps show it.
+    fn limit_by_curvature_of_lines(&mut self, around: &Surroundings<'_>, share: f64, floor: f64) {
+        for line in &around.skeleton.lines {
+            for around_middle in line.vertices.windows(3) {
+                let [before, at, after] = [0, 1, 2].map(|k| around.points[around_middle[k] as usize]);
+                let (step, next) = (at - before, after - at);
+                let turn = step.angle_between(next);
+                if turn > 0.0 {
+                    let radius = 0.5 * (step.length() + next.length()) / turn;
+                    let limit = (share * radius).max(floor);
+                    around_middle.iter().for_each(|vertex| self.lower(around.torus, *vertex as usize, limit));
+                }
             }
         }
     }

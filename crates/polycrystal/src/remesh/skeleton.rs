@@ -59,7 +59,13 @@ pub(crate) struct Skeleton {
 type EdgeKey = (u32, Moved<u32>);
 
 impl Skeleton {
-    pub(crate) fn new(level: &Level, mesh: &TriangleMesh, sets: &WallSets, torus: &Torus) -> Self {
+    /// `is_corner` tells of vertices at which lines end though just two edges of one meet there.
+    pub(crate) fn new(
+        (level, mesh): (&Level, &TriangleMesh),
+        sets: &WallSets,
+        torus: &Torus,
+        is_corner: impl Fn(usize) -> bool,
+    ) -> Self {
         let edge_count = id(mesh.edge_count());
         let is_non_manifold =
             |edge: u32| match mesh.edge_triangles(EdgeId(edge)).map(|pair| pair.map(|triangle| triangle.0)) {
@@ -92,8 +98,9 @@ impl Skeleton {
             others.dedup();
             others.len()
         };
-        let is_node: Vec<bool> =
-            (0..level.vertex_count()).map(|vertex| !matches!(count(vertex), 0 | 2)).collect();
+        let is_node: Vec<bool> = (0..level.vertex_count())
+            .map(|vertex| !matches!(count(vertex), 0 | 2) || is_corner(vertex))
+            .collect();
         let mut skeleton = Self {
             lines: Vec::new(),
             occurrences: Vec::new(),

@@ -1,12 +1,13 @@
 //! Volumes of grains after remeshing: what chords of curved boundaries take, points get back.
 
 use glam::DVec3;
+use voronoi::Dimension;
 
 use crate::mesh::volume::largest_relative_error;
 use crate::remesh::assembled::Assembled;
 use crate::remesh::torus::Moved;
 use crate::solver::least_motion::{MovingPoint, least_motion};
-use crate::{Freedom, Mesh, Network, WallSet};
+use crate::{Elements, Freedom, Network, WallSet};
 
 /// What a volume may lack in the end, as a share of it.
 const TOLERANCE: f64 = 1e-12;
@@ -76,15 +77,19 @@ pub(crate) fn hold_on_walls<'a>(
 fn moving_points(assembled: &Assembled) -> Vec<MovingPoint> {
     let (network, points) = (&assembled.network, assembled.points());
     let level = network.finest_level();
-    let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+    let elements = Elements::from(&level.mesh);
+    // A normal is twice as long as a triangle's area, of which each corner has a third; or as long as a segment.
+    let share = match elements.dimension() {
+        Dimension::Two => 1.0 / 2.0,
+        Dimension::Three => 1.0 / 6.0,
+    };
     let mut moving = vec![MovingPoint { weight: 1.0, ..MovingPoint::default() }; assembled.positions.len()];
-    for (corners, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {
-        let [a, b, c] = corners.map(|corner| points[corner as usize]);
-        let normal = (b - a).cross(c - a);
-        for corner in corners {
+    for (element, boundary) in (0u32..).zip(&level.boundary_of) {
+        let normal = elements.normal(&points, element);
+        for corner in elements.corners(element).iter() {
             let point = &mut moving[assembled.originals[*corner as usize].original as usize];
             for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
-                *point.gradients.entry(grain.0).or_default() += normal * (sign / 6.0);
+                *point.gradients.entry(grain.0).or_default() += normal * (sign * share);
             }
         }
     }

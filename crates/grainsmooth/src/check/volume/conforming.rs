@@ -1,10 +1,10 @@
 //! Whether tetrahedra fit together: face to face, node to node.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Found;
 use crate::VolumeFile;
-use crate::volume_mesh::element_faces::FACES;
+use crate::volume_mesh::element_shape::FACES;
 
 /// The faces of all tetrahedra, by their corners in order, with the tetrahedra on both sides.
 pub(super) struct Faces {
@@ -56,6 +56,7 @@ pub(super) fn check(file: &VolumeFile, faces: &Faces, found: &mut Found) {
     }
     check_nodes(file, found);
     check_prisms(file, found);
+    check_closed_by_prisms(file, faces, found);
 }
 
 /// All nodes are used, and no two in one place but those that cohesive elements join.
@@ -96,6 +97,51 @@ fn check_prisms(file: &VolumeFile, found: &mut Found) {
                     format!("a cohesive element joins the nodes {one} and {other}, which are apart");
                 found.push("torn", message, Some(file.place(*a)));
             }
+        }
+    }
+}
+
+/// Where grains have nodes of their own, cohesive elements close what is between them: each has a tetrahedron on either side, unless the nodes there stand in for others whole periods away; and
+/// no two faces lie on each other without one.
+fn check_closed_by_prisms(file: &VolumeFile, faces: &Faces, found: &mut Found) {
+    if file.prisms.is_empty() {
+        return;
+    }
+    let is_tied: BTreeSet<u32> = file.ties.iter().map(|tie| tie.copy).collect();
+    let mut joined: BTreeSet<[[u32; 3]; 2]> = BTreeSet::new();
+    for &[a, b, c, d, e, f] in &file.prisms {
+        let sides = [[a, b, c], [d, e, f]];
+        for side in sides {
+            let stands_in = side.iter().all(|node| is_tied.contains(node));
+            if faces.at(side).len() != 1 && !stands_in {
+                let message = format!(
+                    "a side of a cohesive element, at node {}, is no outer face of a tetrahedron",
+                    file.node(side[0])
+                );
+                found.push("torn", message, Some(file.place(side[0])));
+            }
+        }
+        let mut sides = sides.map(sorted);
+        sides.sort_unstable();
+        joined.insert(sides);
+    }
+    let bits = |node: u32| file.place(node).to_array().map(|coordinate| (coordinate + 0.0).to_bits());
+    let mut at_places: BTreeMap<[[u64; 3]; 3], Vec<[u32; 3]>> = BTreeMap::new();
+    for corners in faces.outer() {
+        let mut place = corners.map(bits);
+        place.sort_unstable();
+        at_places.entry(place).or_default().push(sorted(corners));
+    }
+    for same in at_places.values().filter(|same| same.len() > 1) {
+        let mut pair = [same[0], same[1]];
+        pair.sort_unstable();
+        if same.len() > 2 || !joined.contains(&pair) {
+            let nodes = same.iter().map(|corners| file.node(corners[0]).to_string());
+            let message = format!(
+                "faces at nodes {} lie on each other, and no cohesive element joins them",
+                nodes.collect::<Vec<_>>().join(", ")
+            );
+            found.push("torn", message, Some(file.place(same[0][0])));
         }
     }
 }

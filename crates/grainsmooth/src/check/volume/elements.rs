@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::{Found, VOLUME_TOLERANCE};
 use crate::VolumeFile;
 use crate::volume_mesh::curved::least_jacobian_share;
-use crate::volume_mesh::element_nodes::EDGES;
+use crate::volume_mesh::element_shape::EDGES;
 use crate::volume_mesh::{VolumeMesh, gamma, volume};
 
 /// Gamma below which rounding alone may turn an element inside out.

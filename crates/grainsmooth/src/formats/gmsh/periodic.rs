@@ -1,18 +1,21 @@
-//! Which surfaces of Gmsh are others moved by whole periods, node by node.
+//! Which surfaces of Gmsh, in the plane curves, are others moved by whole periods, node by node.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
-use polycrystal::BoundaryId;
+use polycrystal::{BoundaryId, Corners};
 use voronoi::{PeriodicPair, Translation};
 
-use super::super::surface::{Part, Surface};
 use super::tag;
 use crate::Polycrystal;
 use crate::volume_mesh::element_nodes::ElementNodes;
+use crate::volume_mesh::element_shape::boundary_elements;
 
 /// A point on the torus, and the periods that lead from there to where it stands.
 type Place = (u32, Translation);
+
+/// The elements of each boundary.
+type ByBoundary = BTreeMap<BoundaryId, Vec<Corners>>;
 
 /// A boundary that is another one, the original, moved by whole periods.
 struct Copy {
@@ -23,7 +26,6 @@ struct Copy {
 
 /// Writes the section `$Periodic`; nothing where nothing is periodic.
 pub(super) fn write(
-    surface: &Surface<'_>,
     polycrystal: &Polycrystal,
     elements: &ElementNodes<'_>,
     pairs: &[PeriodicPair<u32>],
@@ -34,18 +36,22 @@ pub(super) fn write(
     for pair in pairs {
         places[pair.secondary as usize] = (pair.primary, pair.translation);
     }
+    let level = polycrystal.network.finest_level();
+    let mut by_boundary: ByBoundary = BTreeMap::new();
+    boundary_elements(&level).for_each(|(boundary, of)| by_boundary.entry(boundary).or_default().push(of));
     let mut copies = twins(polycrystal);
     if copies.is_empty() {
-        copies = opposite(surface, polycrystal, &places);
+        copies = opposite(&by_boundary, polycrystal, &places);
     }
     if copies.is_empty() {
         return Ok(());
     }
     writeln!(out, "$Periodic\n{}", copies.len())?;
     let points_of = |boundary: BoundaryId| -> BTreeSet<u32> {
-        let triangles = surface.triangles_of(&surface.parts[boundary.index()]);
-        triangles.flat_map(|corners| elements.of_triangle(corners)).collect()
+        let own = by_boundary.get(&boundary).into_iter().flatten();
+        own.flat_map(|corners| elements.on_boundary(corners)).collect()
     };
+    let dimension = polycrystal.dimension().axes() - 1;
     for Copy { boundary, original, translation } in &copies {
         let by_place: BTreeMap<Place, u32> =
             points_of(*original).into_iter().map(|point| (places[point as usize], point)).collect();
@@ -55,7 +61,7 @@ pub(super) fn write(
         });
         let pairs: Vec<(u32, u32)> = pairs.collect();
         // No affine transformation: Gmsh would search for the nearest points with it, which are given here.
-        writeln!(out, "2 {} {}\n0\n{}", tag(*boundary), tag(*original), pairs.len())?;
+        writeln!(out, "{dimension} {} {}\n0\n{}", tag(*boundary), tag(*original), pairs.len())?;
         pairs.iter().try_for_each(|(copy, original)| writeln!(out, "{} {}", copy + 1, original + 1))?;
     }
     writeln!(out, "$EndPeriodic")
@@ -72,41 +78,32 @@ fn twins(polycrystal: &Polycrystal) -> Vec<Copy> {
 }
 
 /// Boundaries on the upper sides of a box at which a periodic network was cut, with those on the lower sides.
-fn opposite(surface: &Surface<'_>, polycrystal: &Polycrystal, places: &[Place]) -> Vec<Copy> {
+fn opposite(by_boundary: &ByBoundary, polycrystal: &Polycrystal, places: &[Place]) -> Vec<Copy> {
     let domain = polycrystal.network.domain();
     let cut = polycrystal.axes_cut_at_box();
-    let across = |part: &Part| {
-        let wall = polycrystal.network.boundaries()[part.boundary.index()].wall?;
+    let across = |boundary: BoundaryId| {
+        let wall = polycrystal.network.boundaries()[boundary.index()].wall?;
         domain.across_axis(wall).filter(|(axis, _)| cut.test(*axis))
     };
-    let corners = |triangle: [u32; 3], from: Translation| {
-        let mut corners = triangle.map(|corner| {
-            let (original, translation) = places[corner as usize];
-            (original, translation - from)
-        });
-        corners.sort_unstable();
-        corners
+    let seen = |corners: &Corners, from: Translation| {
+        let places = corners.iter().map(|corner| places[*corner as usize]);
+        let mut places: Vec<Place> = places.map(|(original, at)| (original, at - from)).collect();
+        places.sort_unstable();
+        places
     };
     let mut lower = BTreeMap::new();
-    for part in &surface.parts {
-        if across(part).is_some_and(|(axis, coordinate)| coordinate == domain.lower()[axis]) {
-            lower.extend(
-                surface
-                    .triangles_of(part)
-                    .map(|triangle| (corners(triangle, Translation::ZERO), part.boundary)),
-            );
+    for (boundary, elements) in by_boundary {
+        if across(*boundary).is_some_and(|(axis, coordinate)| coordinate == domain.lower()[axis]) {
+            lower.extend(elements.iter().map(|corners| (seen(corners, Translation::ZERO), *boundary)));
         }
     }
-    let copy = |part: &Part| {
-        let (axis, _) = across(part).filter(|(axis, coordinate)| *coordinate == domain.upper()[*axis])?;
+    let copy = |(boundary, elements): (&BoundaryId, &Vec<Corners>)| {
+        let (axis, _) =
+            across(*boundary).filter(|(axis, coordinate)| *coordinate == domain.upper()[*axis])?;
         let mut translation = Translation::ZERO;
         translation.0[axis] = 1;
-        let first = surface.triangles_of(part).next()?;
-        Some(Copy {
-            boundary: part.boundary,
-            original: *lower.get(&corners(first, translation))?,
-            translation,
-        })
+        let original = *lower.get(&seen(elements.first()?, translation))?;
+        Some(Copy { boundary: *boundary, original, translation })
     };
-    surface.parts.iter().filter_map(copy).collect()
+    by_boundary.iter().filter_map(copy).collect()
 }

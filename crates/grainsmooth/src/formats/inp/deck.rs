@@ -3,7 +3,9 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use glam::DVec3;
 use texture::CrystalSymmetry;
+use voronoi::Dimension;
 
 use super::{equations, materials};
 use crate::config::spelling::name_of;
@@ -59,12 +61,13 @@ impl Polycrystal {
     /// [`Error::NoSides`] where nothing is left of the box's sides to pull at; [`Error::WriteOutput`]; [`Error::OutputTwice`].
     pub fn stage_solver_deck(&self, deck: &DeckOutput, files: &mut StagedFiles) -> Result<(), Error> {
         let domain = self.network.domain();
+        let axis_count = usize::from(self.dimension().axes());
         let is_on_side = |upper: bool, axis: usize| {
             let side = if upper { domain.upper() } else { domain.lower() };
             self.points.iter().any(|point| point[axis] == side[axis])
         };
         let has_sides =
-            domain.is_box() && (0..3).all(|axis| is_on_side(false, axis) && is_on_side(true, axis));
+            domain.is_box() && (0..axis_count).all(|axis| is_on_side(false, axis) && is_on_side(true, axis));
         if !domain.is_periodic() && !has_sides {
             return Err(Error::NoSides { path: deck.output.path().to_owned() });
         }
@@ -87,17 +90,23 @@ fn write(polycrystal: &Polycrystal, included: &str, out: &mut dyn Write) -> io::
         writeln!(out, "** Those of {of} are an example.\n*MATERIAL, NAME={name}\n*ELASTIC, TYPE=ORTHO")?;
         writeln!(out, "{}\n{last}", first.join(", "))?;
     }
-    let [x, y, z] = domain.size().to_array();
+    let DVec3 { x, y, z } = domain.size();
+    let is_plane = polycrystal.dimension() == Dimension::Two;
+    // Elements in the plane are 1 thick.
+    let z = if is_plane { 1.0 } else { z };
     if equations::are_asked(polycrystal) {
         // One node is fixed, and the three rotations, by half of the mean shear. CalculiX tells no reactions of nodes in equations: a force it is.
         let force = STRESS * y * z;
-        writeln!(out, "*BOUNDARY\nHELD, 1, 3\nPERIOD_X, 2, 3\nPERIOD_Y, 3\n*STEP\n*STATIC")?;
+        let held =
+            if is_plane { "HELD, 1, 2\nPERIOD_X, 2" } else { "HELD, 1, 3\nPERIOD_X, 2, 3\nPERIOD_Y, 3" };
+        writeln!(out, "*BOUNDARY\n{held}\n*STEP\n*STATIC")?;
         writeln!(out, "** A mean stress of {STRESS:?} MPa along x, times the area of the box across it.")?;
         writeln!(out, "*CLOAD\nPERIOD_X, 1, {force:?}\n*NODE FILE\nU\n*EL FILE\nS, E")?;
         writeln!(out, "** Divided by the length of the box, which is {x:?}, it is the mean strain.")?;
         writeln!(out, "*NODE PRINT, NSET=PERIOD_X\nU\n*END STEP")
     } else {
-        writeln!(out, "*BOUNDARY\nX0, 1\nX0Y0Z0, 2, 3\nX0Y1Z0, 3\n*STEP\n*STATIC")?;
+        let held = if is_plane { "X0Y0, 2" } else { "X0Y0Z0, 2, 3\nX0Y1Z0, 3" };
+        writeln!(out, "*BOUNDARY\nX0, 1\n{held}\n*STEP\n*STATIC")?;
         writeln!(out, "** A mean strain of {STRAIN:?} along x.")?;
         writeln!(out, "*BOUNDARY\nX1, 1, 1, {:?}\n*NODE FILE\nU\n*EL FILE\nS, E", STRAIN * x)?;
         writeln!(

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use glam::DVec3;
 use voronoi::PeriodicPair;
 
-use super::tetrahedra::write_node;
+use super::elements::write_node;
 use crate::Polycrystal;
 use crate::names::AXES;
 
@@ -29,8 +29,9 @@ pub(super) fn write(
 ) -> io::Result<()> {
     let domain = polycrystal.network.domain();
     let axes = if domain.is_periodic() { domain.periodic() } else { polycrystal.axes_cut_at_box() };
+    let axis_count = usize::from(polycrystal.dimension().axes());
     let mut of_axes = [0; 3];
-    let periodic = (0..3).filter(|axis| axes.test(*axis));
+    let periodic = (0..axis_count).filter(|axis| axes.test(*axis));
     for (node, axis) in (node_count + 1..).zip(periodic) {
         of_axes[axis] = node;
         writeln!(out, "*NODE, NSET=PERIOD_{}", AXES[axis].to_uppercase())?;
@@ -46,7 +47,7 @@ pub(super) fn write(
         let translations = of_axes.into_iter().zip(translation.0).filter(|(_, periods)| *periods != 0);
         let of_axes: Vec<(usize, i8)> = translations.map(|(node, periods)| (node, -periods)).collect();
         let ends = [(*secondary as usize + 1, 1), (*primary as usize + 1, -1)];
-        for component in 1..=3 {
+        for component in 1..=axis_count {
             let terms = ends.iter().chain(&of_axes);
             let terms: Vec<String> =
                 terms.map(|(node, factor)| format!("{node}, {component}, {factor}.")).collect();

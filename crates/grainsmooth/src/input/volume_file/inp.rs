@@ -10,7 +10,7 @@ use polycrystal::GrainId;
 use super::numbered::{Places, number, wrong_node_count};
 use super::{Tie, VolumeFile};
 use crate::mesh::file::MeshFileProblem;
-use crate::volume_mesh::element_faces::FACES;
+use crate::volume_mesh::element_shape::FACES;
 
 /// Prefix of the element sets of grains, and of the node sets of the axes of a periodic box.
 const GRAIN: &str = "GRAIN_";

@@ -138,8 +138,7 @@ fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<(
         Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
         Cells::TrianglesOf { count, triangle } => (0..count).try_for_each(|cell| visit(&triangle(cell))),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
-        Cells::Tetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
-        Cells::QuadraticTetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
+        Cells::Elements(kind, points) => points.chunks(kind.point_count()).try_for_each(|cell| visit(cell)),
         Cells::Vertices(_) => Ok(()),
     }
 }
@@ -208,9 +207,7 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
         Cells::Triangles(triangles) => triangles.to_vec(),
         Cells::TrianglesOf { count, triangle } => (0..count).map(triangle).collect(),
         Cells::Polygons(polygons) => subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?.0,
-        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {
-            Vec::new()
-        }
+        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Elements(..) => Vec::new(),
     };
     let triangles = triangles.iter().map(|corners| corners.map(|id| mesh.points[id as usize]));
     stl::check_range(triangles.clone().flatten())?;

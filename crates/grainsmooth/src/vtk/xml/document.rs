@@ -15,8 +15,6 @@ const VERTEX: u8 = 1;
 const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
-const TETRAHEDRON: u8 = 10;
-const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 /// The elements of a file but for the last tag, whose arrays are listed in `numbers`.
 pub(super) fn document<'a>(
@@ -28,7 +26,7 @@ pub(super) fn document<'a>(
         (XmlFormat::UnstructuredGrid, _) => ("UnstructuredGrid", "Cells"),
         (XmlFormat::PolyData, Cells::Polylines(_)) => ("PolyData", "Lines"),
         (XmlFormat::PolyData, Cells::Vertices(_)) => ("PolyData", "Verts"),
-        // Tetrahedra do not come here: `write` refuses them.
+        // Finite elements do not come here: `write` refuses them.
         (XmlFormat::PolyData, _) => ("PolyData", "Polys"),
     };
     let field: String = data.field.iter().map(|entry| field(entry, format, numbers)).collect();
@@ -77,8 +75,7 @@ fn topology<'a>(data: &PolyData<'a>, format: XmlFormat) -> Vec<Array<'a>> {
             Cells::Polygons(_) => POLYGON,
             Cells::Polylines(_) => POLY_LINE,
             Cells::Vertices(_) => VERTEX,
-            Cells::Tetrahedra(_) => TETRAHEDRON,
-            Cells::QuadraticTetrahedra(_) => QUADRATIC_TETRAHEDRON,
+            Cells::Elements(kind, _) => kind as u8,
         };
         arrays.push(Array { name: "types", values: Values::each(data.cells.len(), move |_| kind) });
     }
@@ -88,9 +85,8 @@ fn topology<'a>(data: &PolyData<'a>, format: XmlFormat) -> Vec<Array<'a>> {
 /// The point ids of all cells in a row, and where in that row each cell ends.
 fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     match cells {
-        Cells::Triangles(triangles) => ids_of_alike(triangles, wide),
-        Cells::Tetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
-        Cells::QuadraticTetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
+        Cells::Triangles(triangles) => ids_of_alike(triangles.as_flattened(), 3, wide),
+        Cells::Elements(kind, points) => ids_of_alike(points, kind.point_count(), wide),
         Cells::TrianglesOf { count, triangle } => {
             let connectivity = match wide {
                 false => Numbers::each(count, triangle),
@@ -118,13 +114,12 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
 }
 
 /// The same of cells with so many points each.
-fn ids_of_alike<const N: usize>(cells: &[[u32; N]], wide: bool) -> (Numbers<'_>, Numbers<'_>) {
-    let corners = cells.as_flattened();
+fn ids_of_alike(corners: &[u32], of_cell: usize, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     let connectivity = match wide {
         false => Numbers::slice(corners),
         true => Numbers::each(corners.len(), |corner| i64::from(corners[corner])),
     };
-    (connectivity, Numbers::ids(cells.len(), |cell| N as u64 * (cell as u64 + 1), wide))
+    (connectivity, Numbers::ids(corners.len() / of_cell, move |cell| (of_cell * (cell + 1)) as u64, wide))
 }
 
 /// The elements of arrays, which have a tuple for each point or cell.

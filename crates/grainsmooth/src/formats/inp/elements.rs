@@ -1,4 +1,4 @@
-//! Tetrahedra that fill smooth grains, as elements C3D4 or C3D10.
+//! Elements that fill smooth grains: tetrahedra C3D4 or C3D10, in the plane triangles such as CPS3 or CPE6.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -6,41 +6,45 @@ use std::io::{self, Write};
 use glam::DVec3;
 
 use super::{equations, number, write_numbers, write_sections};
-use crate::Polycrystal;
 use crate::names::{AXES, side_of_box};
-use crate::volume_mesh::VolumeMesh;
-use crate::volume_mesh::cohesive::{CohesiveMesh, Prism};
-use crate::volume_mesh::element_faces::ElementFace;
+use crate::volume_mesh::cohesive::{CohesiveMesh, Joint};
 use crate::volume_mesh::element_nodes::ElementNodes;
+use crate::volume_mesh::element_shape::{ElementFace, ElementShape};
+use crate::{PlaneState, Polycrystal};
 
 /// Writes nodes, those of the network first; elements grain by grain; sets of both; as surfaces each boundary, by the elements of its first side, and the sides of the box;
 /// and, where they are asked for, cohesive elements and equations.
-pub(super) fn write(polycrystal: &Polycrystal, filling: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let network = &polycrystal.network;
-    let (mut elements, mut pairs) = polycrystal.elements(filling)?;
-    let is_cohesive = polycrystal.file().volume.cohesive;
-    let cohesive = is_cohesive.then(|| CohesiveMesh::new(filling, network, &pairs));
-    if let Some(cohesive) = &cohesive {
-        elements = ElementNodes::linear(&cohesive.mesh);
-        pairs.clone_from(&cohesive.ties);
+    let (mut elements, mut pairs) = polycrystal.elements()?;
+    // The nodes of faces are those of a grain that may have its own.
+    let faces = elements.faces_at_boundaries(network);
+    let mut joints = Vec::new();
+    if polycrystal.file().volume.cohesive {
+        let cohesive = CohesiveMesh::new(&elements, network, &pairs);
+        (elements, joints, pairs) = (cohesive.elements, cohesive.joints, cohesive.ties);
     }
     writeln!(out, "*NODE, NSET=NODES")?;
     (1..).zip(&*elements.points).try_for_each(|(node, point)| write_node(node, *point, out))?;
     write_sides(polycrystal, &elements.points, out)?;
-    writeln!(out, "*ELEMENT, TYPE=C3D{}, ELSET=ELEMENTS", elements.node_count)?;
+    let family = match (elements.shape, polycrystal.file().volume.plane_state.unwrap_or_default()) {
+        (ElementShape::Tetrahedron, _) => "C3D",
+        (ElementShape::Triangle, PlaneState::Stress) => "CPS",
+        (ElementShape::Triangle, PlaneState::Strain) => "CPE",
+    };
+    writeln!(out, "*ELEMENT, TYPE={family}{}, ELSET=ELEMENTS", elements.node_count)?;
     (1..).zip(elements.iter()).try_for_each(|(element, nodes)| write_element(element, nodes, out))?;
     let mut first = 1;
     let mut grains = Vec::new();
-    for of_grain in filling.grains.chunk_by(|a, b| a == b) {
+    for of_grain in elements.grains.chunk_by(|a, b| a == b) {
         let grain = of_grain[0].index();
         first = write_element_set(&format!("GRAIN_{grain}"), first, of_grain.len(), out)?;
         grains.push(grain);
     }
-    if let Some(cohesive) = &cohesive {
-        write_prisms(&cohesive.prisms, first, out)?;
+    if !joints.is_empty() {
+        write_joints(&joints, first, out)?;
     }
-    // The nodes of faces are those of a grain that may have its own.
-    write_surfaces(polycrystal, &filling.faces_at_triangles(network), &elements, out)?;
+    write_surfaces(polycrystal, &faces, &elements, out)?;
     write_sections(&grains, polycrystal.grains(), out)?;
     if equations::are_asked(polycrystal) {
         equations::write(polycrystal, elements.points.len(), &pairs, out)?;
@@ -49,10 +53,11 @@ pub(super) fn write(polycrystal: &Polycrystal, filling: &VolumeMesh, out: &mut d
 }
 
 /// Writes cohesive elements from a number on, their sets, and their section: separations are strains, for a thickness of 1.
-fn write_prisms(prisms: &[Prism], mut first: usize, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "*ELEMENT, TYPE=COH3D6, ELSET=COHESIVE")?;
-    (first..).zip(prisms).try_for_each(|(element, prism)| write_element(element, &prism.nodes, out))?;
-    for of_boundary in prisms.chunk_by(|a, b| a.boundary == b.boundary) {
+fn write_joints(joints: &[Joint], mut first: usize, out: &mut dyn Write) -> io::Result<()> {
+    let kind = if joints[0].nodes.len() == 4 { "COH2D4" } else { "COH3D6" };
+    writeln!(out, "*ELEMENT, TYPE={kind}, ELSET=COHESIVE")?;
+    (first..).zip(joints).try_for_each(|(element, joint)| write_element(element, &joint.nodes, out))?;
+    for of_boundary in joints.chunk_by(|a, b| a.boundary == b.boundary) {
         let name = format!("BOUNDARY_{}", of_boundary[0].boundary.0);
         first = write_element_set(&name, first, of_boundary.len(), out)?;
     }
@@ -85,12 +90,13 @@ fn write_sides(polycrystal: &Polycrystal, points: &[DVec3], out: &mut dyn Write)
     if !domain.is_box() {
         return Ok(());
     }
+    let axis_count = usize::from(polycrystal.dimension().axes());
     let ends = [domain.lower(), domain.upper()];
     // Of each axis: not at a side, at the lower, at the upper one.
     let mut sets: BTreeMap<[Option<usize>; 3], Vec<usize>> = BTreeMap::new();
     for (node, point) in points.iter().enumerate() {
         let at = [0, 1, 2].map(|axis| {
-            let is_wall = !domain.periodic().test(axis);
+            let is_wall = axis < axis_count && !domain.periodic().test(axis);
             (0..2).find(|end| is_wall && point[axis] == ends[*end][axis])
         });
         for chosen in 1..8 {
