@@ -1,6 +1,7 @@
 """Whether meshio, VTK and scikit-fem read triangles that fill grains as expected, and cohesive elements join what they should."""
 
 import json
+import os
 import pathlib
 import re
 import sys
@@ -12,6 +13,9 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 folder = pathlib.Path(sys.argv[1])
+# meshio looks for the numbers of .xdmf in the working directory.
+os.chdir(folder)
+folder = pathlib.Path()
 expected = json.loads((folder / "expected.json").read_text())
 points, triangles = np.array(expected["points"]), np.array(expected["triangles"])
 grains, areas, order = np.array(expected["grains"]), np.array(expected["areas"]), expected["order"]
@@ -64,7 +68,7 @@ if expected["periodic"]:
     numbers = text.split("$Periodic\n")[1].split("$EndPeriodic")[0].split("\n")
     nodes = meshio.read(folder / "grains.msh").points
     tags = np.concatenate(
-        [np.array(block.split(), dtype=int) for block in re.findall(r"\n[12] \d+ 0 \d+\n((?:\d+\n)*)", text.split("$Nodes")[1].split("$EndNodes")[0])]
+        [np.array(block.split(), dtype=int) for block in re.findall(r"(?m)^[12] \d+ 0 \d+\n((?:\d+\n)*)", text.split("$Nodes")[1].split("$EndNodes")[0])]
     )
     place = dict(zip(tags, nodes))
     pairs = [tuple(map(int, line.split())) for line in numbers if len(line.split()) == 2]

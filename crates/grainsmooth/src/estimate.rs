@@ -2,13 +2,14 @@
 
 use std::fmt;
 
+use glam::DVec3;
 use polycrystal::{FaceMesh, MeshSize, remove_short_edges};
 use voronoi::Dimension;
 
 use crate::formats::format::FileSize;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels, in_words};
 use crate::run::pipeline::voxel_bytes;
-use crate::{Config, Error, OutputFormat, Tessellated};
+use crate::{Config, Error, OutputFormat, PeriodicCut, Tessellated};
 
 /// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, and in space where cells are
 /// regularised, as what collapses is decided by relaxation. These, and bytes, are about right.
@@ -88,16 +89,18 @@ struct Remeshed {
     filled: u128,
 }
 
-/// Triangles on boundaries, for each grain's squared diameter in units of the size: 5.2 to 5.7 were found. They are shared by two grains.
-const TRIANGLES: f64 = 5.4;
+/// The surface of a grain in units of its squared equivalent diameter, a third more than a ball's; two grains share it but for the sides of the box.
+const SURFACE: f64 = 4.2;
 
 /// Tetrahedra for the volume in units of the cubed size, and more for each triangle.
 const TETRAHEDRA: f64 = 3.0;
 const TETRAHEDRA_OF_TRIANGLE: f64 = 1.3;
 
-/// In the plane, segments for each grain's diameter in units of the size, and triangles for the area in units of the squared size: 2.26 to 2.35 were found.
+/// In the plane, segments for each grain's diameter in units of the size.
 const SEGMENTS: f64 = 2.1;
-const PLANE_TRIANGLES: f64 = 2.3;
+
+/// Triangles for an area in units of the squared size: 2.26 to 2.35 were found, where equilateral ones would be 2.31.
+const TRIANGLES: f64 = 2.3;
 
 impl Remeshed {
     fn new(config: &Config, cells: &Tessellated) -> Self {
@@ -120,16 +123,27 @@ impl Remeshed {
             Dimension::Two => {
                 let segments = count(SEGMENTS * of_diameters(1));
                 let boundaries = LevelSize { points: segments, edges: segments, triangles: 0 };
-                Self { boundaries, filled: count(PLANE_TRIANGLES * whole / size.powi(2)) }
+                Self { boundaries, filled: count(TRIANGLES * whole / size.powi(2)) }
             }
             Dimension::Three => {
-                let triangles = TRIANGLES * of_diameters(2);
+                let sides = config.sides_of_box() / size.powi(2);
+                let triangles = TRIANGLES * 0.5 * (SURFACE * of_diameters(2) + sides);
                 let filled = TETRAHEDRA * whole / size.powi(3) + TETRAHEDRA_OF_TRIANGLE * triangles;
                 let triangles = count(triangles);
                 let boundaries = LevelSize { points: triangles / 2, edges: triangles * 3 / 2, triangles };
                 Self { boundaries, filled: count(filled) }
             }
         }
+    }
+}
+
+impl Config {
+    /// The area of the box's sides at which grains end.
+    fn sides_of_box(&self) -> f64 {
+        let DVec3 { x, y, z } = self.box_size;
+        let is_side = |axis: usize| !self.periodic.test(axis) || self.periodic_cut == PeriodicCut::Box;
+        let pairs = [(0, y * z), (1, x * z), (2, x * y)].into_iter().filter(|(axis, _)| is_side(*axis));
+        pairs.map(|(_, area)| 2.0 * area).sum()
     }
 }
 
