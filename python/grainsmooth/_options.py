@@ -329,14 +329,14 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--arrays -o grains.vtm``"""
 
     volume_mesh: bool
-    """Write tetrahedra that fill the grains to .msh and .vtu, which otherwise hold boundaries; .inp and .bdf always hold
-    tetrahedra
+    """Write tetrahedra (in 2D triangles) that fill the grains to .msh and .vtu, which otherwise hold boundaries; .inp and .bdf
+    always hold such elements; with ``voxels`` .vtu holds hexahedra (squares)
 
     Example of the command line: ``--elements-per-grain 5 --volume-mesh -o grains.vtu``"""
 
     order: Value
-    """Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, on the smooth surface where boundaries are
-    remeshed [default: 1]
+    """Order of the tetrahedra or triangles: 1, or 2 for a node in the middle of each edge, on the smooth surface where
+    boundaries are remeshed [default: 1]
 
     Example of the command line: ``--elements-per-grain 3 --order 2 -o grains.inp``"""
 
@@ -346,9 +346,15 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--periodic x,y,z --elements-per-grain 4 --periodic-equations -o grains.inp``"""
 
     cohesive: bool
-    """Give each grain of .inp its own nodes, and put cohesive elements (COH3D6 of Abaqus) between the grains
+    """Give each grain of .inp its own nodes, and put cohesive elements (COH3D6 of Abaqus, in 2D COH2D4) between the grains
 
     Example of the command line: ``--elements-per-grain 4 --cohesive -o grains.inp``"""
+
+    plane_state: Literal["stress", "strain"]
+    """What holds across the plane of 2D elements: no stress (CPS3, CPS6 and CPS4 of .inp), or no strain (CPE3, CPE6, CPE4)
+    [default: stress]
+
+    Example of the command line: ``--dim 2 --elements-per-grain 5 --plane-state strain -o grains.inp``"""
 
     solver_deck: Literal["tension-x"]
     """Write a job for CalculiX and Abaqus next to .inp: the box is stretched along x, with the elastic constants of a crystal
