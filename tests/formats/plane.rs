@@ -110,7 +110,9 @@ fn meshio_scikit_fem_and_gmsh_read_triangles() {
         }
         let filled = polycrystal.plane_mesh.as_ref().unwrap();
         let quality = filled.quality().unwrap();
-        assert!(quality.least_angle > 10.0 && quality.mean_shape > 0.9, "{quality:?}");
+        // Where grains are cut, corners are narrow.
+        let is_cut = periodic_cut == PeriodicCut::Box;
+        assert!(is_cut || quality.least_angle > 25.0 && quality.mean_shape > 0.9, "{quality:?}");
         let network = &polycrystal.network;
         let boundaries = network.boundaries();
         let expected = serde_json::json!({
