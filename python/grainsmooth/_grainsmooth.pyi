@@ -133,6 +133,8 @@ def of_labels(
     exterior_label: int | None,
     min_voxels: int,
     decimate: float | None,
+    split_parts: bool,
+    periodic: tuple[bool, bool, bool],
     threads: int,
     progress: Callable[[str, int, int], object] | None,
 ) -> Polycrystal: ...

@@ -470,6 +470,13 @@ class MapOptions(TypedDict, total=False):
 
     Example of the command line: ``grainsmooth smooth map.ang --rotate 180,1,0,0``"""
 
+    align: bool
+    """Shift the sections of a stack so that crystals agree best with those of the section before
+
+    Sections move by whole points; what is not in all of them afterwards is left out.
+
+    Example of the command line: ``grainsmooth smooth sections --align --spacing 0.25 0.25 0.3``"""
+
     crystal_symmetry: Value
     """Symmetry of the crystals, if the file gives none
 

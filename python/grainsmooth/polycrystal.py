@@ -159,6 +159,8 @@ class Polycrystal:
         origin: tuple[float, ...] | None = None,
         exterior_label: int | None = None,
         min_voxels: int = 1,
+        parts: str = "keep",
+        periodic: str = "",
         decimate: float | None = None,
         threads: int | None = None,
         progress: Progress = False,
@@ -179,6 +181,10 @@ class Polycrystal:
             Label of what is no grain.
         min_voxels : int, optional
             Grains with fewer voxels go to their neighbours.
+        parts : {"keep", "split"}, optional
+            What becomes of a label whose voxels hang together in several parts: one grain, or a grain for each.
+        periodic : str, optional
+            Axes along which the labels repeat, such as ``"xyz"`` or ``"x,y"``: grains are whole there.
         decimate : float, optional
             Edges shorter than so many voxels collapse; 1.6 where it is not given, in the plane 0. With 0 every voxel stays in its grain.
         threads, progress
@@ -194,6 +200,11 @@ class Polycrystal:
             raise ValueError(f"labels: give an array of shape (nx, ny, nz) or (nx, ny), not {array.shape}")
         if decimate is not None and not 0 <= decimate < np.inf:
             raise ValueError(f"decimate: give a finite number of voxels, 0 or more, not {decimate}")
+        if parts not in ("keep", "split"):
+            raise ValueError(f"parts: give 'keep' or 'split', not {parts!r}")
+        axes = _inputs.text("periodic", periodic).replace(",", "")
+        if not set(axes) <= set("xyz"[: array.ndim]):
+            raise ValueError(f"periodic: give axes among {', '.join('xyz'[: array.ndim])}, not {periodic!r}")
         nx, ny, nz = (*array.shape, 1)[:3]
         place = (0.0,) * array.ndim if origin is None else origin
         corner = _inputs.numbers("origin", place, 1)
@@ -209,6 +220,8 @@ class Polycrystal:
                 None if exterior_label is None else _inputs.count("exterior_label", exterior_label, -(2**31), 2**31 - 1),
                 _inputs.count("min_voxels", min_voxels, 1, 2**63),
                 decimate,
+                parts == "split",
+                ("x" in axes, "y" in axes, "z" in axes),
                 _inputs.thread_count(threads),
                 tell,
             )

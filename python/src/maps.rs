@@ -7,8 +7,8 @@ use glam::{BVec3, DVec3};
 use grainsmooth::cli::Arguments;
 use grainsmooth::texture::SymmetryError;
 use grainsmooth::{
-    Error, FileOptions, LabelMap, MapNetworkOptions, MapOptions, MapRun, MeasuredMap, OrientationMap, Stage,
-    read_map, smooth_map,
+    Error, FileOptions, LabelMap, LabelParts, MapNetworkOptions, MapOptions, MapRun, MeasuredMap,
+    OrientationMap, Stage, read_map, smooth_map,
 };
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -56,13 +56,17 @@ pub fn of_labels(
     exterior_label: Option<i32>,
     min_voxels: u64,
     decimate: Option<f64>,
+    split_parts: bool,
+    periodic: [bool; 3],
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Polycrystal> {
     let labels = list(LABELS, &labels)?;
     let (spacing, origin) = (DVec3::from(spacing), DVec3::from(origin));
     let map = LabelMap { shape, spacing, origin, periodic: BVec3::FALSE, labels };
-    let options = MapOptions { exterior_label, min_voxels, ..MapOptions::default() };
+    let parts = if split_parts { LabelParts::Split } else { LabelParts::Keep };
+    let periodic = Some(BVec3::from_array(periodic));
+    let options = MapOptions { exterior_label, min_voxels, parts, periodic, ..MapOptions::default() };
     let measured =
         MeasuredMap::of_labels(map, &options).map_err(|error| invalid(format!("{LABELS}: {error}")))?;
     let network = MapNetworkOptions { decimate, ..MapNetworkOptions::default() };

@@ -44,6 +44,7 @@ CALLS: dict[str, Callable[[Any], object]] = {
     "origin": lambda junk: of_labels(LABELS, origin=junk),
     "exterior_label": lambda junk: of_labels(LABELS, exterior_label=junk),
     "min_voxels": lambda junk: of_labels(LABELS, min_voxels=junk),
+    "parts": lambda junk: of_labels(LABELS, parts=junk),
     "euler_angles": of_orientations,
     "phase": lambda junk: of_orientations(ANGLES, phase=junk),
     "phases": lambda junk: of_orientations(ANGLES, phases=junk),

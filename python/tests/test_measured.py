@@ -27,6 +27,28 @@ def test_networks_of_labels_keep_the_volumes_of_their_voxels() -> None:
     np.testing.assert_array_equal(same.points, grains.points)
 
 
+def test_labels_repeat_and_have_parts() -> None:
+    labels = np.zeros((8, 8, 8), dtype=int)
+    labels[:4] = 5
+    labels[6:, :, :4] = 5
+    whole = grainsmooth.Polycrystal.from_labels(labels)
+    assert list(whole.seed_id) == [0, 5]
+    parts = grainsmooth.Polycrystal.from_labels(labels, parts="split")
+    assert list(parts.seed_id) == [0, 5, 5]
+    np.testing.assert_allclose(sorted(parts.volumes), [64, 192, 256], rtol=1e-9)
+    with pytest.raises(ValueError, match="parts: give 'keep' or 'split', not 'some'"):
+        grainsmooth.Polycrystal.from_labels(labels, parts="some")
+    # Grains of blocks that are shifted through the sides have the same volumes, whole.
+    blocks = np.kron(np.arange(27).reshape(3, 3, 3), np.ones((4, 4, 4), dtype=int))
+    shifted = np.roll(blocks, 2, axis=(0, 1, 2))
+    for axes in ["xyz", "x,y,z"]:
+        grains = grainsmooth.Polycrystal.from_labels(shifted, periodic=axes)
+        np.testing.assert_allclose(grains.volumes, 64, rtol=1e-9)
+        assert grains.points.min() < -1
+    with pytest.raises(ValueError, match="periodic: give axes among x, y, not 'z'"):
+        grainsmooth.Polycrystal.from_labels(labels[0], periodic="z")
+
+
 def test_maps_are_read_as_arrays_are(tmp_path: pathlib.Path) -> None:
     labels = np.zeros((6, 5, 4), dtype=np.uint16)
     labels[3:] = 7

@@ -55,6 +55,32 @@ fn a_network_is_beside_its_map() {
 }
 
 #[test]
+fn whole_grains_are_beside_a_map_that_repeats() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 30 --rng-seed 3 --periodic x,y,z -n 1 --voxels 32 32 32 -o map.vti -o made.vtp");
+    workplace.run("smooth map.vti --periodic x,y,z --decimate 0 -o exact.vtp");
+    workplace.run("smooth map.vti --periodic x,y,z -o decimated.vtp");
+    for name in ["exact.vtp", "decimated.vtp"] {
+        let found = agreement(&workplace, &format!("{name} --labels map.vti --periodic x,y,z"));
+        let differing = number(&found, "differing_voxels");
+        assert!(if name == "exact.vtp" { differing == 0.0 } else { differing < 300.0 }, "{differing}");
+        assert!(number(&found, "largest_volume_error") < 1e-9, "{found}");
+        let [mean, largest] = ["mean_distance", "largest_distance"].map(|key| number(&found, key));
+        assert!(0.05 < mean && mean < 0.3 && largest < 1.2, "{mean}, {largest}");
+        assert!(number(&found, "neighbors") > 20.0, "{found}");
+        assert_eq!((number(&found, "lost_neighbors"), number(&found, "new_neighbors")), (0.0, 0.0));
+    }
+    workplace.run("smooth map.vti -o apart.vtp");
+    for (network, axes) in [("apart.vtp", "x,y,z"), ("exact.vtp", "x")] {
+        workplace.refuses(
+            &format!("check {network} --labels map.vti --periodic {axes}"),
+            FAILED,
+            "map.vti: is taken to repeat, and the network does not so; leave --periodic out, or give the axes with which the network was made",
+        );
+    }
+}
+
+#[test]
 fn voxels_that_changed_are_found() {
     let workplace = workplace();
     let smooth = OF_MAP.replace("--labels", "smooth");

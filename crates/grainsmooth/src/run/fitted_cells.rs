@@ -3,6 +3,7 @@
 //! Volumes and centroids of the cells determine a power diagram, and where the grains come from one, it is this one. Seeds are the maximum of a concave function whose
 //! slope is what centroids miss, times the volume (Bourne, Pearce and Roper, Inverting Laguerre tessellations, 2024, arXiv:2406.00871).
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use glam::DVec3;
@@ -43,19 +44,12 @@ pub(super) struct FittedCells {
 /// The cells, one for each grain of a map.
 ///
 /// # Errors
-/// [`Error::MapFile`] where the map repeats or has pores, or there is no such diagram, as where grains have one centroid; [`Error::NetworkOfMap`].
+/// [`Error::MapFile`] where the map has pores, or there is no such diagram, as where grains have one centroid; [`Error::NetworkOfMap`].
 pub(super) fn fitted_cells(path: &Path, measured: &MeasuredMap) -> Result<FittedCells, Error> {
     let unfit = |problem| Error::MapFile { path: path.to_owned(), problem };
     let map = &measured.map;
-    if map.periodic.any() {
-        return Err(unfit(MapProblem::Unfit {
-            what: "is taken to repeat, and cells are fitted to maps that do not",
-            remedy: "leave --periodic or --fit-cells out",
-        }));
-    }
     let mut voxels = vec![0.0; measured.labels.len()];
-    let mut sums = vec![DVec3::ZERO; voxels.len()];
-    for (voxel, label) in map.labels.iter().enumerate() {
+    for label in &map.labels {
         let Ok(grain) = usize::try_from(*label) else {
             return Err(unfit(MapProblem::Unfit {
                 what: "has voxels without a grain, and cells fill a box",
@@ -63,13 +57,11 @@ pub(super) fn fitted_cells(path: &Path, measured: &MeasuredMap) -> Result<Fitted
             }));
         };
         voxels[grain] += 1.0;
-        sums[grain] += place(map, voxel);
     }
     let domain = map.domain()?;
     let voxel = domain.measure() / map.labels.len() as f64;
     let volumes: Vec<f64> = voxels.iter().map(|count| count * voxel).collect();
-    let wanted = sums.iter().zip(&voxels).map(|(sum, count)| middle(map, *sum / *count));
-    let wanted: Vec<DVec3> = wanted.collect();
+    let wanted = centroids(map, &domain, &voxels);
     let (diagram, missed) =
         fitted(&domain, &wanted, &volumes).map_err(|problem| unfit(MapProblem::NoCells(problem)))?;
     let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
@@ -79,18 +71,59 @@ pub(super) fn fitted_cells(path: &Path, measured: &MeasuredMap) -> Result<Fitted
         Network::new(resolved.as_ref().unwrap_or(tessellation), Junctions::Crease, 0).map_err(failed)?;
     let edge = domain.dimension().cube_edge(domain.measure() / volumes.len() as f64);
     let fit = CellFit {
-        agreeing_voxels: agreeing_voxels(map, &diagram),
+        agreeing_voxels: agreeing_voxels(map, &domain, &diagram),
         voxels: map.labels.len() as u64,
         centroid_distance: (missed / domain.measure()).sqrt() / edge,
     };
     Ok(FittedCells { network, points, fit })
 }
 
+/// The centroids of all grains, of so many voxels each; where the map repeats, of whole grains.
+fn centroids(map: &LabelMap, domain: &Domain, voxels: &[f64]) -> Vec<DVec3> {
+    let grain = |label: &i32| usize::try_from(*label).expect("every voxel has a grain");
+    let middles =
+        || map.labels.iter().enumerate().map(|(voxel, label)| (grain(label), middle(map, place(map, voxel))));
+    // On the circle that a period is, the mean direction is near the centroid of a grain narrower than half of it.
+    let angles = |point: DVec3| TAU * (point - domain.lower()) / domain.size();
+    let mut directions = vec![[DVec3::ZERO; 2]; voxels.len()];
+    for (grain, point) in middles() {
+        let angles = angles(point).to_array();
+        directions[grain][0] += DVec3::from_array(angles.map(f64::cos));
+        directions[grain][1] += DVec3::from_array(angles.map(f64::sin));
+    }
+    let about: Vec<DVec3> = directions
+        .iter()
+        .map(|[cosine, sine]| {
+            let turns = [0, 1, 2].map(|axis| sine[axis].atan2(cosine[axis]) / TAU);
+            let along = DVec3::from_array(turns) * domain.size();
+            domain.lower() + DVec3::select(domain.periodic(), along, DVec3::ZERO)
+        })
+        .collect();
+    let mut sums = vec![DVec3::ZERO; voxels.len()];
+    for (grain, point) in middles() {
+        sums[grain] += nearest_copy(domain, point - about[grain]);
+    }
+    let mean = |((sum, count), about): ((&DVec3, &f64), &DVec3)| inside(domain, *about + *sum / *count);
+    sums.iter().zip(voxels).zip(&about).map(mean).collect()
+}
+
+/// The shortest of the vectors to all copies of a point.
+fn nearest_copy(domain: &Domain, vector: DVec3) -> DVec3 {
+    let periods = (vector / domain.size()).round();
+    vector - DVec3::select(domain.periodic(), periods * domain.size(), DVec3::ZERO)
+}
+
+/// The copy of a point that lies in the box.
+fn inside(domain: &Domain, point: DVec3) -> DVec3 {
+    let periods = ((point - domain.lower()) / domain.size()).floor();
+    point - DVec3::select(domain.periodic(), periods * domain.size(), DVec3::ZERO)
+}
+
 /// The diagram of these volumes whose centroids are nearest to those wanted, and the sum of squared distances times volumes.
 fn fitted(domain: &Domain, wanted: &[DVec3], volumes: &[f64]) -> Result<(PowerDiagram, f64), VolumesError> {
     let misses = |diagram: &PowerDiagram| -> Vec<DVec3> {
         let cells = diagram.tessellation().cell_measures();
-        wanted.iter().zip(cells).map(|(wanted, cell)| *wanted - cell.centroid).collect()
+        wanted.iter().zip(cells).map(|(wanted, cell)| nearest_copy(domain, *wanted - cell.centroid)).collect()
     };
     let sum = |misses: &[DVec3]| -> f64 {
         misses.iter().zip(volumes).map(|(miss, volume)| miss.length_squared() * volume).sum()
@@ -100,7 +133,7 @@ fn fitted(domain: &Domain, wanted: &[DVec3], volumes: &[f64]) -> Result<(PowerDi
     let mut step = 1.0;
     for _ in 0..ROUNDS {
         let seeds = best.tessellation().seeds().iter().zip(&missed).map(|(seed, miss)| {
-            let moved = *seed + step * *miss;
+            let moved = inside(domain, *seed + step * *miss);
             if domain.contains(moved) { moved } else { *seed }
         });
         let tried = PowerDiagram::with_volumes(domain, &seeds.collect::<Vec<_>>(), volumes);
@@ -118,7 +151,7 @@ fn fitted(domain: &Domain, wanted: &[DVec3], volumes: &[f64]) -> Result<(PowerDi
 }
 
 /// Number of voxels whose middle lies in the cell of their grain: nearer to it, by power distance, than to all neighbours of the cell.
-fn agreeing_voxels(map: &LabelMap, diagram: &PowerDiagram) -> u64 {
+fn agreeing_voxels(map: &LabelMap, domain: &Domain, diagram: &PowerDiagram) -> u64 {
     let tessellation = diagram.tessellation();
     let (seeds, weights) = (tessellation.seeds(), diagram.weights());
     let beside = |cell: CellId| {
@@ -130,7 +163,8 @@ fn agreeing_voxels(map: &LabelMap, diagram: &PowerDiagram) -> u64 {
     let agrees = |(voxel, label): (usize, &i32)| {
         let Ok(own) = usize::try_from(*label) else { return false };
         let middle = middle(map, place(map, voxel));
-        let distance = |cell: usize| seeds[cell].distance_squared(middle) - weights[cell];
+        let distance =
+            |cell: usize| nearest_copy(domain, seeds[cell] - middle).length_squared() - weights[cell];
         neighbors[own].iter().all(|other| distance(own) <= distance(*other))
     };
     map.labels.par_iter().enumerate().filter(|voxel| agrees(*voxel)).count() as u64

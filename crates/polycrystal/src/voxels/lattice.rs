@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use voronoi::{Dimension, Domain};
 
 use crate::voxels::labels::{OUTSIDE, Voxels};
-use crate::voxels::pattern::{Copies, Meeting, copies, octants_around, touching, two_sheets};
+use crate::voxels::pattern::{Meeting, SplitPoint, copies, octants_around, touching, two_sheets};
 use crate::{GrainId, NetworkError};
 
 /// Labels of voxels (in the plane: pixels), x fastest, and how many each has.
@@ -33,7 +33,7 @@ pub(super) type Place = [usize; 3];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MixedPlace {
     pub(super) place: Place,
-    pub(super) copies: Copies,
+    pub(super) copies: SplitPoint,
 }
 
 /// Fewer voxels than this along a period would have a neighbour on both sides.
@@ -206,7 +206,7 @@ impl Lattice {
             let mut of_quarters = [0; 12];
             of_quarters[..4].copy_from_slice(&meeting.sheets());
             let count = if meeting == Meeting::Together { 1 } else { 2 };
-            Some(MixedPlace { place, copies: Copies { of_quarters, count } })
+            Some(MixedPlace { place, copies: SplitPoint { of_quarters, count } })
         });
         mixed.collect()
     }

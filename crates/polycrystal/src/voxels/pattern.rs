@@ -65,7 +65,7 @@ impl Meeting {
 
 /// The copies of a point of the lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Copies {
+pub(super) struct SplitPoint {
     /// The copy that each quarter face belongs to, of those between different labels.
     pub(super) of_quarters: [u8; QUARTERS],
     pub(super) count: u8,
@@ -79,7 +79,7 @@ pub(super) struct Touching {
 }
 
 /// The copies of a point between octants with these labels.
-pub(super) fn copies(labels: [u32; 8], volume: &impl Fn(u32) -> u64) -> Copies {
+pub(super) fn copies(labels: [u32; 8], volume: &impl Fn(u32) -> u64) -> SplitPoint {
     let mut parents: [usize; QUARTERS] = std::array::from_fn(|quarter| quarter);
     for_half_edges(|axis, side| {
         let (octants, quarters) = around(axis, side);
@@ -106,11 +106,15 @@ pub(super) fn copies(labels: [u32; 8], volume: &impl Fn(u32) -> u64) -> Copies {
             count - 1
         })
     });
-    Copies { of_quarters, count }
+    SplitPoint { of_quarters, count }
 }
 
 /// Where a grain touches itself in one copy of a point: two parts of it stand there that hang together nowhere around it.
-pub(super) fn touching(labels: [u32; 8], copies: &Copies, volume: &impl Fn(u32) -> u64) -> Option<Touching> {
+pub(super) fn touching(
+    labels: [u32; 8],
+    copies: &SplitPoint,
+    volume: &impl Fn(u32) -> u64,
+) -> Option<Touching> {
     let mut parents: [usize; 8] = std::array::from_fn(|octant| octant);
     for quarter in 0..QUARTERS {
         let [lower, upper] = octants(quarter);
@@ -154,7 +158,7 @@ pub(super) fn touching(labels: [u32; 8], copies: &Copies, volume: &impl Fn(u32) 
 /// The sheets of an edge of the lattice that goes up from a point along an axis, each as the copy of the point that it stands at; nothing where there is one sheet.
 pub(super) fn two_sheets(
     labels: [u32; 8],
-    copies: &Copies,
+    copies: &SplitPoint,
     axis: usize,
     side: usize,
     volume: &impl Fn(u32) -> u64,

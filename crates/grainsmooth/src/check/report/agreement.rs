@@ -5,7 +5,7 @@ use std::fmt;
 use std::num::NonZeroU32;
 
 use glam::DVec3;
-use polycrystal::{BoundaryDistances, GrainId, Side, Surface};
+use polycrystal::{BoundaryDistances, BoundaryId, GrainId, Side, Surface};
 use rayon::prelude::*;
 use serde::Serialize;
 use voronoi::{Dimension, Domain};
@@ -73,10 +73,10 @@ impl MapAgreement {
         let points: Vec<DVec3> = file.points.iter().map(|point| *point * file.stretch).collect();
         let surface = Surface { points: &points, ..file.surface() };
         let map = &measured.map;
-        if map.periodic.any() {
+        if map.periodic.any() && !repeats_as(file, map) {
             return Err(MapProblem::Unfit {
-                what: "is taken to repeat, and whole grains are not compared",
-                remedy: "compare a network that was made without --periodic",
+                what: "is taken to repeat, and the network does not so",
+                remedy: "leave --periodic out, or give the axes with which the network was made",
             });
         }
         let domain = domain_at(name, &surface, map)?;
@@ -128,6 +128,8 @@ impl MapAgreement {
         let errors = of_grains.iter().map(|grain| (grain.volume / grain.voxel_volume - 1.0).abs());
         let (volume_error_sum, largest_volume_error) = sum_and_largest(errors);
 
+        let (boundary_of, across) = across_periods(&surface, file.originals.as_deref());
+        let surface = Surface { boundary_of: &boundary_of, sides: &across, ..surface };
         let Faces { distances, pairs, lost_neighbors, new_neighbors } = Faces::new(&surface, map, &sides);
         let (distance_sum, largest_distance) = sum_and_largest(distances.iter().copied());
         let mean = |sum: f64, count: usize| if count > 0 { sum / count as f64 } else { 0.0 };
@@ -190,6 +192,7 @@ impl Faces {
         let surface = Surface { points: &points, ..*surface };
         let boundaries = BoundaryDistances::new(&surface);
         let height = if map.is_plane() { in_voxels(&DVec3::ZERO).z - 0.5 } else { 0.0 };
+        let copies = copies_in_voxels(map);
         let of_row = |row: usize| {
             let (y, z) = (row % ny, row / ny);
             let mut distances = Vec::new();
@@ -197,15 +200,22 @@ impl Faces {
             for x in 0..nx {
                 let voxel = row * nx + x;
                 let middle = DVec3::new(x as f64 + 0.5, y as f64 + 0.5, z as f64 + 0.5 + height);
-                let next = [(x + 1 < nx, 1), (y + 1 < ny, nx), (z + 1 < nz, nx * ny)];
-                for (axis, (_, step)) in next.into_iter().enumerate().filter(|(_, (is_there, _))| *is_there) {
-                    let labels = [map.labels[voxel], map.labels[voxel + step]];
+                for (axis, (at, step)) in [(x, 1), (y, nx), (z, nx * ny)].into_iter().enumerate() {
+                    let next = match map.shape[axis] {
+                        count if at + 1 < count => voxel + step,
+                        // What repeats goes on with its first voxel.
+                        count if map.periodic.test(axis) => voxel - step * (count - 1),
+                        _ => continue,
+                    };
+                    let labels = [map.labels[voxel], map.labels[next]];
                     if labels[0] == labels[1] {
                         continue;
                     }
                     if let [Some(one), Some(other)] = labels.map(|label| sides.of(label)) {
                         let face = middle + 0.5 * DVec3::AXES[axis];
-                        distances.extend(boundaries.distance([one, other], face));
+                        let to_copies =
+                            copies.iter().filter_map(|copy| boundaries.distance([one, other], face + *copy));
+                        distances.extend(to_copies.min_by(f64::total_cmp));
                     }
                     if labels[0] >= 0 && labels[1] >= 0 {
                         pairs.insert([labels[0].min(labels[1]), labels[0].max(labels[1])]);
@@ -239,6 +249,58 @@ impl Faces {
     }
 }
 
+/// Whether a network has the periods of a map.
+fn repeats_as(file: &LabelledFile, map: &LabelMap) -> bool {
+    let Some(periods) = file.periods.filter(|_| file.originals.is_some()) else { return false };
+    let size = map.spacing * DVec3::from_array(map.shape.map(|count| count as f64));
+    (0..3).all(|axis| {
+        let period = if map.periodic.test(axis) { size[axis] } else { 0.0 };
+        // Files in single precision round what they tell.
+        (periods[axis] * file.stretch[axis] - period).abs() <= APART * map.spacing[axis]
+    })
+}
+
+/// How far the copies of a point are from it, in voxels: those one period away, and itself.
+fn copies_in_voxels(map: &LabelMap) -> Vec<DVec3> {
+    let mut copies = vec![DVec3::ZERO];
+    for axis in (0..3).filter(|axis| map.periodic.test(*axis)) {
+        let period = map.shape[axis] as f64 * DVec3::AXES[axis];
+        copies = copies.iter().flat_map(|copy| [*copy, *copy - period, *copy + period]).collect();
+    }
+    copies
+}
+
+/// The boundary of each element and the sides of all boundaries, with the grain beyond where an element comes again a period away.
+fn across_periods(surface: &Surface<'_>, originals: Option<&[u32]>) -> (Vec<BoundaryId>, Vec<[Side; 2]>) {
+    let Some(originals) = originals else { return (surface.boundary_of.to_vec(), surface.sides.to_vec()) };
+    let elements = 0..u32::try_from(surface.elements.len()).expect("elements are numbered by u32");
+    let outer = |element: &u32| surface.sides_of(*element).contains(&Side::Exterior);
+    let mut copies: BTreeMap<Vec<u32>, Vec<u32>> = BTreeMap::new();
+    for element in elements.clone().filter(outer) {
+        let corners = surface.elements.corners(element);
+        let mut corners: Vec<u32> = corners.iter().map(|corner| originals[*corner as usize]).collect();
+        corners.sort_unstable();
+        copies.entry(corners).or_default().push(element);
+    }
+    let inner = |element: u32| {
+        surface.sides_of(element).into_iter().find(|side| *side != Side::Exterior).unwrap_or(Side::Exterior)
+    };
+    let pairs = copies.values().filter_map(|copies| <[u32; 2]>::try_from(copies.as_slice()).ok());
+    let beyond: BTreeMap<u32, [Side; 2]> =
+        pairs.flat_map(|[one, two]| [one, two].map(|copy| (copy, [inner(one), inner(two)]))).collect();
+    let mut numbers: BTreeMap<[Side; 2], BoundaryId> = BTreeMap::new();
+    let mut sides = Vec::new();
+    let boundary_of = elements.map(|element| {
+        let between = beyond.get(&element).copied().unwrap_or_else(|| surface.sides_of(element));
+        let next = BoundaryId(u32::try_from(sides.len()).expect("no more boundaries than elements"));
+        *numbers.entry(between).or_insert_with(|| {
+            sides.push(between);
+            next
+        })
+    });
+    (boundary_of.collect(), sides)
+}
+
 /// The box that a map fills, if its grains are where those of the network are.
 fn domain_at(name: &str, surface: &Surface<'_>, map: &LabelMap) -> Result<Domain, MapProblem> {
     let of_map = map.grain_bounds();
@@ -246,7 +308,8 @@ fn domain_at(name: &str, surface: &Surface<'_>, map: &LabelMap) -> Result<Domain
     let of_network = surface.points.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], around);
     let axes = usize::from(surface.elements.dimension().axes());
     let apart = [0, 1].map(|end| ((of_map[end] - of_network[end]) / map.spacing).abs());
-    let is_near = |axis: usize| apart.iter().all(|apart| apart[axis] <= APART);
+    // Whole grains go on through the sides of a box that repeats.
+    let is_near = |axis: usize| map.periodic.test(axis) || apart.iter().all(|apart| apart[axis] <= APART);
     let is_plane = surface.elements.dimension() == Dimension::Two;
     let domain = map.domain().ok().filter(|_| map.is_plane() == is_plane && (0..axes).all(is_near));
     domain.ok_or_else(|| {
