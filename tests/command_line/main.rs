@@ -12,6 +12,7 @@ mod control_meshes;
 mod domains;
 mod elements;
 mod front;
+mod given_networks;
 mod good_runs;
 mod grain_shapes;
 mod inside;

@@ -295,7 +295,7 @@ fn grains_of_a_map_that_repeats_are_whole() {
     workplace.refuses(
         "check b.vtp --labels a.npy --periodic x",
         FAILED,
-        "a.npy: is taken to repeat, and whole grains are not compared; compare a network that was made without --periodic",
+        "a.npy: is taken to repeat, and the network does not so; leave --periodic out, or give the axes with which the network was made",
     );
 }
 
@@ -303,9 +303,15 @@ fn grains_of_a_map_that_repeats_are_whole() {
 #[test]
 fn cells_fitted_to_the_voxels_of_cells_are_these() {
     let workplace = Workplace::new();
-    for (dimension, voxels) in [("", "32 24 20"), ("--dim 2 --box 3 2", "90 60")] {
+    for (dimension, voxels, periodic) in [
+        ("", "32 24 20", ""),
+        ("--dim 2 --box 3 2", "90 60", ""),
+        ("--periodic x,y,z", "32 32 32", "--periodic x,y,z"),
+        ("--dim 2 --periodic y", "64 64", "--periodic y"),
+    ] {
         workplace.run(&format!("--seeds 20 {dimension} --relax 0 -n 0 --voxels {voxels} -o a.vti"));
-        let said = workplace.run("smooth a.vti --fit-cells -o b.vtp --json-summary a.txt --stats b.json");
+        let said =
+            workplace.run(&format!("smooth a.vti {periodic} --fit-cells -o b.vtp --json-summary a.txt"));
         assert!(said.contains("validation  good"), "{said}");
         workplace.command("check b.vtp").assert().success();
         let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.txt")).unwrap();
@@ -313,7 +319,8 @@ fn cells_fitted_to_the_voxels_of_cells_are_these() {
         let share = number("agreeing_voxels") / number("voxels");
         assert!(share > 0.98 && number("centroid_distance") < 0.01, "{share}: {said}");
         // The network's own voxels count the same.
-        let said = workplace.command("check b.vtp --labels a.vti --json").assert().success();
+        let mut check = workplace.command(&format!("check b.vtp --labels a.vti {periodic} --json"));
+        let said = check.assert().success();
         let report: serde_json::Value = serde_json::from_slice(&said.get_output().stdout).unwrap();
         let map = &report["files"][0]["map"];
         let differing = map["differing_voxels"].as_f64().unwrap();
@@ -321,18 +328,11 @@ fn cells_fitted_to_the_voxels_of_cells_are_these() {
         assert!(map["largest_volume_error"].as_f64().unwrap() < 1e-9, "{map}");
     }
     workplace.put("pore.npy", npy(&[4, 3], &[0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 2]));
-    for (arguments, message) in [
-        (
-            "pore.npy --exterior-label 0 --fit-cells",
-            "pore.npy: has voxels without a grain, and cells fill a box; crop the map to its grains, or leave --fit-cells out",
-        ),
-        (
-            "pore.npy --periodic x --fit-cells",
-            "pore.npy: is taken to repeat, and cells are fitted to maps that do not; leave --periodic or --fit-cells out",
-        ),
-    ] {
-        workplace.refuses(&format!("smooth {arguments}"), FAILED, message);
-    }
+    workplace.refuses(
+        "smooth pore.npy --exterior-label 0 --fit-cells",
+        FAILED,
+        "pore.npy: has voxels without a grain, and cells fill a box; crop the map to its grains, or leave --fit-cells out",
+    );
 }
 
 #[test]
@@ -431,7 +431,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "map.jpg",
-            "map.jpg: unknown extension; give a map *.vti, *.npy, *.npz, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.dream3d, *.h5, *.h5oina, *.raw, *.tif, *.tiff, *.png, *.ang, *.ctf, *.cpr or *.crc",
+            "map.jpg: unknown extension; give a map *.vti, *.npy, *.npz, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.dream3d, *.h5, *.h5oina, *.h5ebsd, *.raw, *.tif, *.tiff, *.png, *.ang, *.ctf, *.cpr or *.crc",
         ),
         (
             "no.vti",
@@ -548,4 +548,34 @@ fn cells_of_a_tessellation_relax() {
     workplace.put("cut.tess", &workplace.bytes("cells.tess")[..500]);
     workplace.command("smooth cut.tess --relax 0.1 -o cut.vtp").assert().failure();
     assert!(!workplace.path("cut.vtp").exists());
+}
+
+/// Two halves of a box: the layers of the report show the map, and the boundary in its middle.
+#[test]
+fn the_report_shows_map_and_network_side_by_side() {
+    let workplace = Workplace::new();
+    let labels: Vec<u8> = (0..8 * 4 * 4).map(|voxel| u8::from(voxel >= 64)).collect();
+    workplace.put("map.npy", npy(&[8, 4, 4], &labels));
+    workplace.run("smooth map.npy --decimate 0 -o a.vtp --report a.html");
+    let page = String::from_utf8(workplace.bytes("a.html")).unwrap();
+    let figures: Vec<&str> = page.split("<figure class=\"wide\">").skip(1).collect();
+    assert_eq!(figures.len(), 3);
+    for (figure, title) in figures.iter().zip(["across z", "across y", "across x"]) {
+        assert!(figure.contains(&format!("Map and network {title}</text>")), "{figure}");
+        let figure = figure.split("</figure>").next().unwrap();
+        assert_eq!(figure.matches("href=\"data:image/png;base64,").count(), 2);
+        let path = figure.split("class=\"boundary\" d=\"").nth(1).unwrap().split('"').next().unwrap();
+        let numbers: Vec<f64> = path
+            .split(['M', 'L', ' '])
+            .filter(|word| !word.is_empty())
+            .map(|word| word.parse().unwrap())
+            .collect();
+        // Inside, the boundary stands upright in the middle of 400; the others are sides of the box.
+        let points = numbers.chunks(2);
+        let inside =
+            points.filter(|point| (1.0..399.0).contains(&point[0]) && (1.0..199.0).contains(&point[1]));
+        let inside: Vec<&[f64]> = inside.collect();
+        assert!(inside.iter().all(|point| title == "across x" || point[0] == 200.0), "{title}: {path}");
+        assert_eq!(inside.is_empty(), title == "across x", "{title}: {path}");
+    }
 }

@@ -1,5 +1,6 @@
 """Writes maps in HDF5 as other programs lay them out: of the labels in a file of NumPy, and of a small map of orientations with the same points in .ang and .ctf."""
 
+import os
 import sys
 
 import h5py
@@ -122,3 +123,41 @@ with h5py.File("points.dream3d", "w", libver="earliest") as file:
     ensemble = container.create_group("EBSD Phase Data")
     ensemble["CrystalStructures"] = np.array([[999], [0], [1]], dtype=np.uint32)
     ensemble["MaterialName"] = np.array([b"Invalid", b"Magnesium", b"Nickel"])
+
+# Four sections of the same columns of grains, each scanned from another corner: as text, and as DREAM.3D imports text of EDAX and of Oxford.
+corners = [(2, 2), (3, 2), (5, 1), (4, 0)]
+columns, rows, step, thickness = 14, 12, 0.25, 0.4
+column, row = (a.ravel() for a in np.meshgrid(np.arange(columns), np.arange(rows)))
+os.mkdir("sections")
+edax, oxford = h5py.File("sections.h5ebsd", "w"), h5py.File("sections_hkl.h5ebsd", "w")
+for file, maker in [(edax, "TSL"), (oxford, "HKL")]:
+    file.attrs["FileVersion"] = np.int32(5)
+    file["Manufacturer"], file["Stacking Order"] = maker, np.uint32(0)
+    file["X Resolution"], file["Y Resolution"], file["Z Resolution"] = np.float32([step, step, thickness])
+for number, (left, above) in enumerate(corners):
+    across, down = column + left, row + above
+    grain = 3 * (across * 2 > down + 12) + np.where(down * 3 > across + 18, 2, down > 4)
+    angles = np.array([[10.0 + 25 * grain for grain in range(6)], [20.0, 50, 70, 35, 60, 15], [30.0] * 6]).T[grain]
+    x, y = column * step, row * step
+    with open(f"sections/s_{number + 9}.ang", "w") as file:
+        file.write("# Phase 1\n# MaterialName Nickel\n# Symmetry 43\n")
+        for at in range(grain.size):
+            numbers = " ".join(f"{angle:.9f}" for angle in np.radians(angles[at]))
+            file.write(f"{numbers} {x[at]} {y[at]} 100 0.9 1 0 1\n")
+    data, header = edax.create_group(f"{number + 9}/Data"), edax.create_group(f"{number + 9}/Header")
+    for name, values in zip(["Phi1", "Phi", "Phi2"], np.radians(angles).T):
+        data[name] = values.astype(np.float32)
+    data["X Position"], data["Y Position"] = x.astype(np.float32), y.astype(np.float32)
+    data["Confidence Index"], data["Image Quality"] = np.full((2, grain.size), [[0.9], [100]], dtype=np.float32)
+    data["PhaseData"] = np.ones(grain.size, dtype=np.int32)
+    header["NCOLS_ODD"], header["NROWS"], header["XSTEP"] = np.int32([columns]), np.int32([rows]), np.float32([step])
+    header["Phases/1/MaterialName"], header["Phases/1/Symmetry"] = "Nickel", np.int32([43])
+    data, header = oxford.create_group(f"{number + 9}/Data"), oxford.create_group(f"{number + 9}/Header")
+    for name, values in zip(["Euler1", "Euler2", "Euler3"], angles.T):
+        data[name] = values.astype(np.float32)
+    data["X"], data["Y"] = x.astype(np.float32), y.astype(np.float32)
+    data["BC"], data["Phase"] = np.full((2, grain.size), [[100], [1]], dtype=np.int32)
+    header["XCells"], header["YCells"], header["XStep"] = np.int32([columns]), np.int32([rows]), np.float32([step])
+    header["Phases/1/PhaseName"], header["Phases/1/LaueGroup"] = "Nickel", np.int32([11])
+edax.close()
+oxford.close()

@@ -76,10 +76,72 @@ fn orientations_in_hdf5_are_those_of_the_text() {
     }
 }
 
+/// Sections of columns of six grains, each scanned from another corner: shifted back, all are the same.
+#[test]
+fn sections_are_stacked_and_aligned() {
+    let Some(folder) = maps("sections_are_stacked_and_aligned") else { return };
+    let read = |name: &str, align: bool| {
+        let ebsd = EbsdOptions { align, ..EbsdOptions::default() };
+        let spacing = (name == "sections").then(|| vec![0.25, 0.25, 0.4]);
+        read_map(&folder.path().join(name), &MapOptions { ebsd, spacing, ..MapOptions::default() }).unwrap()
+    };
+    for name in ["sections", "sections.h5ebsd", "sections_hkl.h5ebsd"] {
+        let as_scanned = read(name, false);
+        assert_eq!(as_scanned.map.shape, [14, 12, 4], "{name}");
+        let crystals = as_scanned.crystals.as_ref().unwrap();
+        assert_eq!((crystals.points.shape, crystals.points.shifted), ([14, 12, 4], 0), "{name}");
+        assert!((as_scanned.map.spacing - DVec3::new(0.25, 0.25, 0.4)).length() < 1e-6, "{name}");
+
+        let aligned = read(name, true);
+        let crystals = aligned.crystals.as_ref().unwrap();
+        // The corners differ by 3 points along x and 2 along y.
+        assert_eq!((crystals.points.shape, crystals.points.shifted), ([11, 10, 4], 3), "{name}");
+        assert_eq!(crystals.points.grains, 6, "{name}");
+        let sections: Vec<&[i32]> = aligned.map.labels.chunks(110).collect();
+        assert!(sections.iter().all(|section| *section == sections[0]), "{name}");
+        // Rows count downward in the file: these are grains at the lower left and upper right, by the sample.
+        let grain = |at: usize| aligned.map.labels[at].cast_unsigned() as usize;
+        let angles = |at: usize| crystals.orientations[grain(at)].euler_degrees();
+        let expected = |grain: f64, tilt: f64| [10.0 + 25.0 * grain, tilt, 30.0];
+        for (at, expected) in [(0, expected(2.0, 70.0)), (109, expected(3.0, 35.0))] {
+            let found = angles(at);
+            let is_near = |(one, two): (&f64, &f64)| (one - two).abs() < 1e-3;
+            assert!(found.iter().zip(&expected).all(is_near), "{name}: {found:?}");
+        }
+    }
+}
+
+/// What DREAM.3D needs to know of each array, read by h5py, and the same grains when it is read again.
+#[test]
+fn dream3d_gets_the_map_as_cleaned() {
+    let test = "dream3d_gets_the_map_as_cleaned";
+    let Some(folder) = maps(test) else { return };
+    let program = || Command::new(env!("CARGO_BIN_EXE_grainsmooth"));
+    for (map, again) in [("points.ang", "plane.dream3d"), ("sections.h5ebsd", "space.dream3d")] {
+        let mut smooth = program();
+        // Where short edges collapse some voxels change their grain.
+        smooth.args(["smooth", map, "-q", "--decimate", "0", "-o", again]).current_dir(folder.path());
+        let output = smooth.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |name: &str| read_map(&folder.path().join(name), &MapOptions::default()).unwrap();
+        let [expected, found] = [map, again].map(read);
+        assert_eq!(expected.map.shape, found.map.shape);
+        assert!(expected.map.labels == found.map.labels && expected.voxel_counts == found.voxel_counts);
+        assert!((expected.map.spacing - found.map.spacing).length() < 1e-6);
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/formats/dream3d.py");
+    let mut python = Command::new("python3");
+    python.arg(script).args(["plane.dream3d", "space.dream3d"]).current_dir(folder.path());
+    let Some(output) = run(test, &mut python) else { return };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn damaged_hdf5_is_read_or_refused() {
     let Some(folder) = maps("damaged_hdf5_is_read_or_refused") else { return };
-    for name in LABELS.into_iter().chain(POINTS).chain(["points.cpr"]) {
+    for name in
+        LABELS.into_iter().chain(POINTS).chain(["points.cpr", "sections.h5ebsd", "sections_hkl.h5ebsd"])
+    {
         let refused = refused_when_damaged(&folder.path().join(name));
         assert!(refused > 40, "{name}: {refused}");
     }

@@ -89,10 +89,13 @@ fn images_that_are_no_maps_are_refused() {
         ("colors.tif", colors),
         ("colors.png", colors),
         ("uneven", "2.png has 5 x 4 pixels, the first slice 24 x 20; give slices of one size"),
-        ("both", "is a folder with .tif and .png images; leave only the slices of the map there"),
+        (
+            "both",
+            "is a folder with slices of two kinds; leave only the slices of the map there, all .tif, .png, .ang or .ctf",
+        ),
         (
             "none",
-            "is a folder without images; give one that holds the slices of a map, each a .tif or .png file",
+            "is a folder without slices; give one that holds the slices of a map, each a .tif, .png, .ang or .ctf file",
         ),
     ] {
         let error = read_map(&folder.path().join(name), &MapOptions::default()).unwrap_err().to_string();

@@ -5,6 +5,7 @@
 mod checked_volumes;
 mod corrupt;
 mod evolver;
+mod given_networks;
 mod grids;
 mod hdf5;
 mod images;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use grainsmooth::{MapOptions, read_map};
+use grainsmooth::{Error, MapOptions, read_map};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -10,6 +10,15 @@ use crate::programs::run;
 
 /// Flips, changes and cuts off bytes of a map in 200 ways: each gives a map, or an error in one line. Returns how many are refused.
 pub fn refused_when_damaged(path: &Path) -> usize {
+    refused_in_200_ways(path, |path| {
+        let map = read_map(path, &MapOptions::default())?;
+        assert_eq!(map.map.labels.len(), map.map.shape.iter().product::<usize>());
+        Ok(())
+    })
+}
+
+/// As [`refused_when_damaged`], of a file that something else reads.
+pub fn refused_in_200_ways(path: &Path, read: impl Fn(&Path) -> Result<(), Error>) -> usize {
     let whole = std::fs::read(path).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(23);
     let mut below = |count: usize| usize::try_from(generator.next_u64() % count as u64).unwrap();
@@ -25,13 +34,10 @@ pub fn refused_when_damaged(path: &Path) -> usize {
             _ => bytes[below(within)] = b"0123456789-\"<> \x00\xff"[below(17)],
         }
         std::fs::write(path, &bytes).unwrap();
-        match read_map(path, &MapOptions::default()) {
-            Ok(map) => assert_eq!(map.map.labels.len(), map.map.shape.iter().product::<usize>()),
-            Err(error) => {
-                refused += 1;
-                let said = error.to_string();
-                assert!(said.starts_with(&*path.to_string_lossy()) && !said.contains('\n'), "{said}");
-            }
+        if let Err(error) = read(path) {
+            refused += 1;
+            let said = error.to_string();
+            assert!(said.starts_with(&*path.to_string_lossy()) && !said.contains('\n'), "{said}");
         }
     }
     refused

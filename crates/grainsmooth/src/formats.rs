@@ -5,6 +5,7 @@ mod bdf;
 mod blocks;
 mod connected;
 mod ctf;
+mod dream3d;
 pub(crate) mod embedded_config;
 mod euler;
 mod evolver;

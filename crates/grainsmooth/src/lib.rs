@@ -113,6 +113,7 @@ pub use input::texture_file::{OrientationList, read_disorientation_file, read_te
 pub use input::volume_file::{Tie, VolumeFile};
 pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
 pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
+pub use maps::map_slice::MapSlice;
 pub use maps::network_options::MapNetworkOptions;
 pub use maps::options::{Axes, Crop, LabelParts, MapOptions};
 pub use maps::orientations::OrientationMap;

@@ -1,7 +1,7 @@
 //! Pictures of the network, drawn in memory: no display and no graphics card is needed.
 
 mod camera;
-mod color;
+pub(crate) mod color;
 mod coloring;
 mod legend;
 mod parts;

@@ -1,6 +1,7 @@
 //! A page about a run: its grains to rotate, its statistics, its figures.
 
 mod chart;
+mod map_slices;
 mod orientation_figures;
 mod poisson_voronoi;
 mod scene;
@@ -69,7 +70,8 @@ impl Polycrystal {
             of_sizes.push(self.size_chart());
         }
         of_sizes.extend([self.face_chart(), self.angle_chart()]);
-        let mut charts: String = of_sizes.iter().map(Chart::figure).collect();
+        let mut charts = map_slices::figures(self)?;
+        charts.extend(of_sizes.iter().map(Chart::figure));
         if let Some(texture) = &self.grains().texture {
             charts += &self.disorientation_chart(texture).figure();
             for number in 0..texture.texture_count() {

@@ -17,7 +17,7 @@ use crate::MapOptions;
     after_help = "Exit status: 0 all good, 1 something is wrong or unreadable, 2 a mistake on the command line."
 )]
 pub struct CheckArguments {
-    /// Files to check: .vtp, .vtu, .vtk or .tess; volume meshes: .inp, .msh, .bdf or .vtu
+    /// Files to check: .vtp, .vtu, .vtk, .tess, .fe, .dmp, .stl or a folder of them, .json or .csv; volume meshes: .inp, .msh, .bdf or .vtu
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
 

@@ -14,7 +14,7 @@ use super::result::ResultArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct RemeshArguments {
-    /// Network to remesh: .vtp, .vtu or .vtk with two labels for each triangle, whichever program wrote it; or .tess (Neper)
+    /// Network to remesh: .vtp, .vtu or .vtk with two labels for each triangle, whichever program wrote it; .tess (Neper), .fe or .dmp (Surface Evolver), or .stl or a folder of them
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
 

@@ -110,7 +110,9 @@ pub enum MeshFileProblem {
         corners: usize,
     },
     /// The extension names no format that can hold a network.
-    #[error("unknown extension; give a network as *.vtp, *.vtu, *.vtk or *.tess")]
+    #[error(
+        "unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.json or *.csv"
+    )]
     NotANetworkFormat,
     /// An edit that control points have no use for.
     #[error("Bezier curves and patches have only control points; move these")]

@@ -35,6 +35,7 @@ impl OutputFormat {
         Self(&super::tess::FORMAT),
         Self(&super::vti::FORMAT),
         Self(&super::npy::FORMAT),
+        Self(&super::dream3d::FORMAT),
         Self::INP,
         Self(&super::bdf::FORMAT),
         Self(&super::xdmf::FORMAT),

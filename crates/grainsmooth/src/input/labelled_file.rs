@@ -10,7 +10,7 @@ use texture::{CrystalSymmetry, Orientation};
 use toml::{Table, Value};
 use voronoi::Dimension;
 
-use super::tess_network;
+use super::{evolver, polygons, stl_set, tess_network};
 use crate::mesh::file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
 use crate::mesh::file::{MeshFileProblem, check_lengths};
 use crate::names::{CONFIG, CRYSTAL_SYMMETRIES, EULER_ANGLES, PERIODS, PHASE, PHASE_NAMES, SEED_ID, VOLUMES};
@@ -69,11 +69,12 @@ pub enum FileElements {
 }
 
 impl LabelledFile {
-    /// Reads a network from a .vtp, .vtu, .vtk or .tess file.
+    /// Reads a network from a .vtp, .vtu, .vtk, .tess, .fe or .dmp file, from polygons in the plane as .json or .csv, or from a .stl file or a folder of them.
     ///
-    /// Cells of a .tess file (Neper) are taken as they are, convex or not, and numbered from 0.
+    /// Cells of a .tess file (Neper) are taken as they are, convex or not, and numbered from 0, as are polygons. Bodies of Surface Evolver (.fe, .dmp) keep their numbers. Several .stl files that are
+    /// closed are a grain each, with the last number in its name; others are boundaries between grains that they enclose.
     ///
-    /// In the other files, the sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
+    /// In files of VTK, the sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
     /// 0), else of `boundary_labels` or `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
     /// at the exterior, that close most grains are taken for the file's.
     ///
@@ -97,13 +98,16 @@ impl LabelledFile {
 
     /// Whether files of such a name are read.
     pub fn is_known(path: &Path) -> bool {
-        reader(path).is_some()
+        reader(path).is_some() || stl_set::is_known(path)
     }
 
     fn try_read(path: &Path) -> Result<Self, MeshFileProblem> {
-        let read = reader(path).ok_or(MeshFileProblem::NotANetworkFormat)?;
-        let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
-        let cells = read(&bytes)?;
+        let cells = if stl_set::is_known(path) {
+            stl_set::read(path)?
+        } else {
+            let read = reader(path).ok_or(MeshFileProblem::NotANetworkFormat)?;
+            read(&std::fs::read(path).map_err(MeshFileProblem::Unreadable)?)?
+        };
         check_lengths(&cells.mesh.points)?;
         let mut file = Self::of_cells(cells)?;
         file.sides = outward_sides(&file.surface());
@@ -270,6 +274,9 @@ fn reader(path: &Path) -> Option<Reader> {
         "vtk" => Some(read_legacy),
         "vtp" | "vtu" => Some(read_xml),
         "tess" => Some(tess_network::read),
+        "fe" | "dmp" => Some(evolver::read),
+        "json" => Some(polygons::read_json),
+        "csv" => Some(polygons::read_csv),
         _ => None,
     }
 }

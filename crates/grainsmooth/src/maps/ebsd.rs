@@ -3,3 +3,4 @@
 pub(super) mod grains;
 mod grid;
 mod segmentation;
+mod stack;

@@ -64,6 +64,14 @@ pub struct EbsdOptions {
     #[arg(long, value_name = "DEGREES,X,Y,Z", allow_hyphen_values = true)]
     pub rotate: Option<AxisAngle>,
 
+    /// Shift the sections of a stack so that crystals agree best with those of the section before
+    ///
+    /// Sections move by whole points; what is not in all of them afterwards is left out.
+    ///
+    /// Example: grainsmooth smooth sections --align --spacing 0.25 0.25 0.3
+    #[arg(long)]
+    pub align: bool,
+
     /// Symmetry of the crystals, if the file gives none
     ///
     /// Example: grainsmooth smooth map.ang --crystal-symmetry cubic
@@ -89,6 +97,7 @@ impl EbsdOptions {
             ("--min-pore", self.min_pore.is_some()),
             ("--merge-twins", self.merge_twins.is_some()),
             ("--rotate", self.rotate.is_some()),
+            ("--align", self.align),
             ("--crystal-symmetry", self.crystal_symmetry.is_some()),
         ];
         all.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)

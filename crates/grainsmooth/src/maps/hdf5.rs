@@ -10,6 +10,7 @@ use super::label_map::MapContent;
 use super::options::MapOptions;
 use super::stored_numbers::Source;
 use crate::error::map_file::MapProblem;
+pub(crate) use dream3d_points::laue_group_number;
 use file::Hdf5;
 
 /// Reads labels, where the file has an array of them, else orientations.

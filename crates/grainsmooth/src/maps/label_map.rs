@@ -206,8 +206,10 @@ pub struct MeasuredCrystals {
 /// How the points of a map of orientations became grains: in words with [`Display`](fmt::Display).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointCounts {
-    /// Points of each row, and rows.
-    pub shape: [usize; 2],
+    /// Points of each row, rows, and sections.
+    pub shape: [usize; 3],
+    /// Sections that were shifted against the first.
+    pub shifted: usize,
     /// Whether every second row is shifted by half a step.
     pub is_hexagonal: bool,
     /// Between neighbours along a row, in the unit of the map.
@@ -229,7 +231,8 @@ pub struct PointCounts {
 impl fmt::Display for PointCounts {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            shape: [columns, rows],
+            shape: [columns, rows, sections],
+            shifted,
             is_hexagonal,
             step,
             unsolved,
@@ -240,11 +243,14 @@ impl fmt::Display for PointCounts {
             contradicted,
         } = self;
         let lattice = if *is_hexagonal { "a hexagonal" } else { "a square" };
-        write!(
-            out,
-            "{columns} x {rows} points on {lattice} grid, step {}, in {grains} grains",
-            significant(*step, 6)
-        )?;
+        write!(out, "{columns} x {rows} points")?;
+        if *sections > 1 {
+            write!(out, " in each of {sections} sections")?;
+        }
+        write!(out, " on {lattice} grid, step {}, in {grains} grains", significant(*step, 6))?;
+        if *shifted > 0 {
+            write!(out, ", {shifted} sections shifted")?;
+        }
         if *merged > 0 {
             write!(out, ", after {merged} twins became one with others")?;
         }

@@ -7,6 +7,8 @@ pub(crate) mod hkl;
 
 use texture::CrystalSymmetry;
 
+use crate::error::map_file::MapProblem;
+
 /// The line of a fault, counted from 1, and what it is.
 pub(crate) type Fault = (usize, String);
 
@@ -17,6 +19,19 @@ pub(crate) struct PointList {
     /// All points, in the order of the file.
     pub(crate) points: Vec<MapPoint>,
     pub(crate) head: HeadGrid,
+    /// The sections that the points are of, one after the other, the uppermost first; none where all are of a single map.
+    pub(crate) sections: Vec<Section>,
+    /// From section to section, where that is told.
+    pub(crate) thickness: Option<f64>,
+}
+
+/// A section of a stack.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Section {
+    /// Of its file, or its number in the file of all.
+    pub(crate) name: String,
+    /// How many points it has.
+    pub(crate) points: usize,
 }
 
 /// What the head of a file says of the grid, which its points may contradict.
@@ -56,6 +71,44 @@ pub(crate) struct MapPoint {
 }
 
 impl PointList {
+    /// A map in the plane.
+    pub(crate) fn of_plane(phases: Vec<MapPhase>, points: Vec<MapPoint>, head: HeadGrid) -> Self {
+        Self { phases, points, head, sections: Vec::new(), thickness: None }
+    }
+
+    /// Sections one above the other, the uppermost first, each with its name. The phases are those of the first.
+    ///
+    /// # Errors
+    /// [`MapProblem::Slice`] where a section has other phases; where there are more points than numbers.
+    pub(crate) fn of_sections(
+        found: Vec<(String, Self)>,
+        thickness: Option<f64>,
+    ) -> Result<Self, MapProblem> {
+        let mut stack: Option<Self> = None;
+        for (name, list) in found {
+            let section = Section { name, points: list.points.len() };
+            let Some(stack) = &mut stack else {
+                stack = Some(Self { sections: vec![section], thickness, ..list });
+                continue;
+            };
+            if list.phases != stack.phases {
+                let what = "lists other phases than the first section";
+                let problem = MapProblem::Unfit { what, remedy: "give all sections the same list" };
+                return Err(MapProblem::Slice { name: section.name, problem: Box::new(problem) });
+            }
+            stack.points.extend(list.points);
+            stack.sections.push(section);
+        }
+        let stack = stack.ok_or(MapProblem::NoLabels)?;
+        if u32::try_from(stack.points.len()).is_err() {
+            return Err(MapProblem::Unfit {
+                what: "has more points than 4294967295",
+                remedy: "give fewer sections at a time",
+            });
+        }
+        Ok(stack)
+    }
+
     /// The phase with a number; in a file of one phase also that of number 0.
     pub(crate) fn phase(&self, number: i64) -> Option<usize> {
         let found = self.phases.iter().position(|phase| phase.number == number);

@@ -56,11 +56,8 @@ impl MeasuredMap {
             name: name.clone(),
             symmetry: Some(*symmetry),
         };
-        let list = PointList {
-            phases: (0..).zip(&map.phases).map(phase).collect(),
-            points: points.collect(),
-            head: HeadGrid::default(),
-        };
+        let phases = (0..).zip(&map.phases).map(phase).collect();
+        let list = PointList::of_plane(phases, points.collect(), HeadGrid::default());
         grains(&list, options)
     }
 }

@@ -32,7 +32,7 @@ enum Content {
 }
 
 /// Every format, a line for each extension.
-const FORMATS: [MapFormat; 19] = [
+const FORMATS: [MapFormat; 20] = [
     MapFormat { extension: "vti", content: Content::Labels(vti::read) },
     MapFormat { extension: "npy", content: Content::Labels(npy::read) },
     MapFormat { extension: "npz", content: Content::Labels(npz::read) },
@@ -44,6 +44,7 @@ const FORMATS: [MapFormat; 19] = [
     MapFormat { extension: "dream3d", content: Content::Either(hdf5::read) },
     MapFormat { extension: "h5", content: Content::Either(hdf5::read) },
     MapFormat { extension: "h5oina", content: Content::Either(hdf5::read) },
+    MapFormat { extension: "h5ebsd", content: Content::Either(hdf5::read) },
     MapFormat { extension: "raw", content: Content::Labels(raw::read) },
     MapFormat { extension: "tif", content: Content::Labels(tiff::read) },
     MapFormat { extension: "tiff", content: Content::Labels(tiff::read) },
@@ -65,8 +66,7 @@ pub fn read_map(path: &Path, options: &MapOptions) -> Result<MeasuredMap, Error>
 fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
     if path.is_dir() {
         check_told("", options)?;
-        check_of_labels(options)?;
-        return labelled(slices::read(path, options)?, options);
+        return of_either(slices::read(path, options)?, options);
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let format = FORMATS.iter().find(|format| extension == format.extension);
@@ -89,16 +89,21 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
             check_of_points(options)?;
             grains(&read(&Source { path, bytes: &bytes()? })?, options).map_err(of_point)
         }
-        Content::Either(read) => match read(&Source { path, bytes: &bytes()? }, options)? {
-            MapContent::Labels(found) => {
-                check_of_labels(options)?;
-                labelled(found, options)
-            }
-            MapContent::Points(found) => {
-                check_of_points(options)?;
-                grains(&found, options).map_err(of_point)
-            }
-        },
+        Content::Either(read) => of_either(read(&Source { path, bytes: &bytes()? }, options)?, options),
+    }
+}
+
+/// The grains of what may be labels or points.
+fn of_either(found: MapContent, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
+    match found {
+        MapContent::Labels(found) => {
+            check_of_labels(options)?;
+            labelled(found, options)
+        }
+        MapContent::Points(found) => {
+            check_of_points(options)?;
+            grains(&found, options).map_err(of_point)
+        }
     }
 }
 

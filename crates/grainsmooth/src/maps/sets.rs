@@ -3,15 +3,15 @@
 use super::cleaning::NO_GRAIN;
 
 /// Numbers in sets, each known by its smallest.
-pub(super) struct Sets(Vec<usize>);
+pub(crate) struct Sets(Vec<usize>);
 
 impl Sets {
-    pub(super) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self((0..count).collect())
     }
 
     /// The smallest of a number's set.
-    fn first(&mut self, mut number: usize) -> usize {
+    pub(crate) fn first(&mut self, mut number: usize) -> usize {
         while self.0[number] != number {
             self.0[number] = self.0[self.0[number]];
             number = self.0[number];
@@ -35,7 +35,7 @@ impl Sets {
         numbers
     }
 
-    pub(super) fn join(&mut self, first: usize, second: usize) {
+    pub(crate) fn join(&mut self, first: usize, second: usize) {
         let (first, second) = (self.first(first), self.first(second));
         self.0[first.max(second)] = first.min(second);
     }

@@ -1,53 +1,91 @@
-//! A folder of numbered images, one for each slice along z.
+//! A folder of numbered slices: images one above the other along z, or sections with orientations.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::label_map::FileMap;
+use rayon::prelude::*;
+
+use super::label_map::{FileMap, MapContent};
 use super::options::MapOptions;
+use super::orientation_map::{Fault, PointList, ang, ctf};
 use super::stored_numbers::Source;
 use super::{png, tiff};
 use crate::error::map_file::MapProblem;
 
-/// Reads the images of a folder in the order of the last numbers in their names.
+/// What reads a slice of a kind.
+#[derive(Clone, Copy)]
+enum Kind {
+    Image(fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>),
+    Orientations(fn(&str) -> Result<PointList, Fault>),
+}
+
+/// Extensions of slices, the first of each kind's the name of the kind.
+const KINDS: [(&[&str], Kind); 4] = [
+    (&["tif", "tiff"], Kind::Image(tiff::read)),
+    (&["png"], Kind::Image(png::read)),
+    (&["ang"], Kind::Orientations(ang::read)),
+    (&["ctf"], Kind::Orientations(ctf::read)),
+];
+
+/// Reads the slices of a folder in the order of the last numbers in their names: images of labels, or sections with orientations.
 ///
 /// # Errors
 /// [`MapProblem`] where there are none, where they are of two kinds or differ in size, or one cannot be read.
-pub(super) fn read(folder: &Path, options: &MapOptions) -> Result<FileMap, MapProblem> {
-    let mut tiffs = Vec::new();
-    let mut pngs = Vec::new();
+pub(super) fn read(folder: &Path, options: &MapOptions) -> Result<MapContent, MapProblem> {
+    let mut paths = vec![Vec::new(); KINDS.len()];
     for entry in fs::read_dir(folder).map_err(MapProblem::Unreadable)? {
         let path = entry.map_err(MapProblem::Unreadable)?.path();
-        match path.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
-            Some("tif" | "tiff") => tiffs.push(path),
-            Some("png") => pngs.push(path),
-            _ => {}
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let kind = KINDS.iter().position(|(known, _)| known.iter().any(|known| extension == *known));
+        if let Some(kind) = kind {
+            paths[kind].push(path);
         }
     }
-    match (tiffs.is_empty(), pngs.is_empty()) {
-        (false, true) => stacked(tiffs, tiff::read, options),
-        (true, false) => stacked(pngs, png::read, options),
-        (true, true) => Err(MapProblem::Unfit {
-            what: "is a folder without images",
-            remedy: "give one that holds the slices of a map, each a .tif or .png file",
+    let mut found = paths.into_iter().zip(KINDS).filter(|(paths, _)| !paths.is_empty());
+    match (found.next(), found.next()) {
+        (Some((paths, (_, Kind::Image(read)))), None) => {
+            stacked(in_order(paths), read, options).map(MapContent::Labels)
+        }
+        (Some((paths, (_, Kind::Orientations(read)))), None) => {
+            sections(&in_order(paths), read).map(MapContent::Points)
+        }
+        (None, _) => Err(MapProblem::Unfit {
+            what: "is a folder without slices",
+            remedy: "give one that holds the slices of a map, each a .tif, .png, .ang or .ctf file",
         }),
-        (false, false) => Err(MapProblem::Unfit {
-            what: "is a folder with .tif and .png images",
-            remedy: "leave only the slices of the map there",
+        (Some(_), Some(_)) => Err(MapProblem::Unfit {
+            what: "is a folder with slices of two kinds",
+            remedy: "leave only the slices of the map there, all .tif, .png, .ang or .ctf",
         }),
     }
 }
 
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn in_order(mut paths: Vec<PathBuf>) -> Vec<PathBuf> {
+    paths.sort_by_cached_key(|path| (last_number(&name(path)), name(path)));
+    paths
+}
+
+/// Sections with orientations, of which the first is the uppermost.
+fn sections(paths: &[PathBuf], read: fn(&str) -> Result<PointList, Fault>) -> Result<PointList, MapProblem> {
+    let section = |path: &PathBuf| {
+        let of_slice = |problem| MapProblem::Slice { name: name(path), problem: Box::new(problem) };
+        let bytes = fs::read(path).map_err(|error| of_slice(MapProblem::Unreadable(error)))?;
+        let found = read(&String::from_utf8_lossy(&bytes));
+        found.map(|list| (name(path), list)).map_err(|(line, what)| of_slice(MapProblem::Line { line, what }))
+    };
+    let found = paths.par_iter().map(section).collect::<Result<Vec<_>, MapProblem>>()?;
+    PointList::of_sections(found, None)
+}
+
 fn stacked(
-    mut paths: Vec<PathBuf>,
+    paths: Vec<PathBuf>,
     read: fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>,
     options: &MapOptions,
 ) -> Result<FileMap, MapProblem> {
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    paths.sort_by_cached_key(|path| {
-        let name = name(path);
-        (last_number(&name), name)
-    });
     let mut stack: Option<FileMap> = None;
     for path in paths {
         let of_slice = |problem| MapProblem::Slice { name: name(&path), problem: Box::new(problem) };
@@ -73,8 +111,8 @@ fn stacked(
     stack.ok_or(MapProblem::NoLabels)
 }
 
-/// The last number in a name; before all others where there is none.
-fn last_number(name: &str) -> Option<u64> {
+/// The last number in the name of a file; before all others where there is none.
+pub(crate) fn last_number(name: &str) -> Option<u64> {
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let end = stem.rfind(|character: char| character.is_ascii_digit())? + 1;
     let start = end - stem[..end].bytes().rev().take_while(u8::is_ascii_digit).count();

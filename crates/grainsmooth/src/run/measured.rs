@@ -88,6 +88,7 @@ pub fn smooth_map(
             dropped: measured.dropped,
             points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
             relabelled,
+            slices: measured.map.middle_slices(),
             fit,
         }),
         cut: BVec3::FALSE,

@@ -6,7 +6,7 @@ use polycrystal::{AngleStatistics, Collapsed, Relaxed, Vanished, WeightedAngle};
 use super::fitted_cells::CellFit;
 use super::regularization::{Reconnected, Regularization};
 use super::tessellated::Tessellated;
-use crate::{Config, FileOptions, GrainAttributes, PointCounts};
+use crate::{Config, FileOptions, GrainAttributes, MapSlice, PointCounts};
 
 /// Where a network comes from.
 #[derive(Debug, Clone)]
@@ -68,6 +68,8 @@ pub struct SmoothedMap {
     pub points: Option<PointCounts>,
     /// Number of voxels that got another label, because a grain touched itself there.
     pub relabelled: usize,
+    /// Layers in the middle of the map, as it was smoothed.
+    pub slices: Vec<MapSlice>,
     /// How cells agree with the map, where they were fitted to it.
     pub fit: Option<CellFit>,
 }

@@ -10,7 +10,7 @@ const LARGE_SPREAD: f64 = 5.0;
 
 /// What the map was, and what was changed of it.
 pub(super) fn write_map(out: &mut fmt::Formatter<'_>, map: &SmoothedMap) -> fmt::Result {
-    let SmoothedMap { shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points, fit } = map;
+    let SmoothedMap { shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points, fit, .. } = map;
     match (points, nz) {
         (Some(points), _) => write!(out, "map         {points}")?,
         (None, 1) => write!(out, "map         {nx} x {ny} pixels")?,

@@ -18,14 +18,14 @@ use crate::maps::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
 /// # Errors
 /// [`MapProblem`] where points stand on no grid, the symmetry of a phase is not known, or no grain is left.
 pub(in super::super) fn grains(list: &PointList, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
-    let whole = PointGrid::new(&list.points)?;
-    let contradicted = list.head.contradicted(&whole);
-    let grid = match &options.crop {
-        Some(crop) => whole.cropped(crop)?,
-        None => whole,
-    };
     let symmetries = symmetries(list, options)?;
     let ebsd = &options.ebsd;
+    if ebsd.align && list.sections.is_empty() {
+        return Err(MapProblem::Unfit {
+            what: "is a single section",
+            remedy: "leave --align out, or give a folder of sections",
+        });
+    }
     if ebsd.min_ci.is_some() && list.points.iter().all(|point| point.confidence.is_none()) {
         return Err(MapProblem::Unfit {
             what: "its points have no confidence index",
@@ -50,6 +50,17 @@ pub(in super::super) fn grains(list: &PointList, options: &MapOptions) -> Result
     let crystal = |point: &MapPoint| {
         let phase = list.phase(point.phase?)?;
         Some(Crystal { phase, orientation: turned(Orientation::from_euler_degrees(point.angles)) })
+    };
+    let aligned = ebsd.align.then(|| {
+        let good = |point: &MapPoint| crystal(point).filter(|_| is_sure(point));
+        list.points.par_iter().map(good).collect::<Vec<Option<Crystal>>>()
+    });
+    let whole =
+        PointGrid::of_list(list, aligned.as_deref().map(|crystals| (crystals, symmetries.as_slice())))?;
+    let contradicted = list.head.contradicted(&whole);
+    let grid = match &options.crop {
+        Some(crop) => whole.cropped(crop)?,
+        None => whole,
     };
     let points = |place: &Option<u32>| place.map(|point| &list.points[point as usize]);
     let solved: Vec<Option<Crystal>> =
@@ -81,7 +92,8 @@ pub(in super::super) fn grains(list: &PointList, options: &MapOptions) -> Result
     let kept: Vec<usize> = kept.collect();
     let count = |is: &dyn Fn(usize) -> bool| (0..labels.len()).filter(|place| is(*place)).count() as u64;
     let counts = PointCounts {
-        shape: [grid.columns, grid.rows],
+        shape: [grid.columns, grid.rows, grid.sections],
+        shifted: grid.shifted,
         is_hexagonal: matches!(grid.grid, Grid::Hexagons(_)),
         step: grid.step[0],
         unsolved: count(&|place| exists[place] && solved[place].is_none()),
@@ -200,26 +212,28 @@ fn leave_pores_open(is_hole: &mut [bool], grid: Grid, least: Option<u64>) -> u64
     open
 }
 
-/// Pixels of grains, with the first row of the map on top. Each point of a hexagonal grid has two, so that pixels touch as hexagons do.
+/// Pixels or voxels of grains, with the first row and the first section of the map on top. Each point of a hexagonal grid has two, so that pixels touch as hexagons do.
 fn label_map(grid: &PointGrid, labels: &[i32], options: &MapOptions) -> LabelMap {
     let from_top = grid.mirror - (grid.first[1] + grid.step[1] * (grid.rows - 1) as f64);
-    let rows = (0..grid.rows).rev();
+    // Depth grows from section to section as y does from row to row.
+    let rows =
+        || (0..grid.sections).rev().flat_map(|at| (0..grid.rows).rev().map(move |row| at * grid.rows + row));
     let (nx, labels, width, left) = match grid.grid {
         Grid::Voxels(..) => {
             let row = |row: usize| labels[row * grid.columns..(row + 1) * grid.columns].iter().copied();
-            (grid.columns, rows.flat_map(row).collect(), grid.step[0], 0.5 * grid.step[0])
+            (grid.columns, rows().flat_map(row).collect(), grid.step[0], 0.5 * grid.step[0])
         }
         Grid::Hexagons(hexagons) => {
             let nx = (hexagons.half_columns - 1).max(1);
             let row = |row: usize| (0..nx).map(move |half| labels[hexagons.at(half, row)]);
-            (nx, rows.flat_map(row).collect(), 0.5 * grid.step[0], 0.0)
+            (nx, rows().flat_map(row).collect(), 0.5 * grid.step[0], 0.0)
         }
     };
-    let found = DVec3::new(width, grid.step[1], width);
+    let found = DVec3::new(width, grid.step[1], grid.thickness.unwrap_or(width));
     let spacing = options.spacing().unwrap_or(found);
     let lower = DVec3::new(grid.first[0] - left, from_top - 0.5 * grid.step[1], 0.0);
     LabelMap {
-        shape: [nx, grid.rows, 1],
+        shape: [nx, grid.rows, grid.sections],
         spacing,
         origin: lower * (spacing / found),
         periodic: BVec3::FALSE,

@@ -23,6 +23,12 @@ pub(super) struct PointGrid {
     pub(super) grid: Grid,
     pub(super) columns: usize,
     pub(super) rows: usize,
+    /// One above the other, the uppermost first; 1 in the plane.
+    pub(super) sections: usize,
+    /// From section to section, where that is known.
+    pub(super) thickness: Option<f64>,
+    /// Sections that were shifted against the first.
+    pub(super) shifted: usize,
     /// Between neighbours along a row, and between rows; rows go downward.
     pub(super) step: [f64; 2],
     /// Coordinates of the first column and of the first row.
@@ -100,6 +106,9 @@ impl PointGrid {
             grid,
             columns,
             rows: y.count,
+            sections: 1,
+            thickness: None,
+            shifted: 0,
             step: [if is_hexagonal { 2.0 * x.step } else { x.step }, y.step],
             first: [x.first, y.first],
             mirror: 2.0 * y.first + y.step * (y.count - 1) as f64,
@@ -107,16 +116,17 @@ impl PointGrid {
         })
     }
 
-    /// The part that is asked for, by columns and by rows from the top.
+    /// The part that is asked for, by columns, and by rows and sections from the top.
     ///
     /// # Errors
     /// [`MapProblem::Crop`].
     pub(super) fn cropped(self, crop: &Crop) -> Result<Self, MapProblem> {
-        let [columns, rows, _] = crop.ranges([self.columns, self.rows, 1])?;
-        let part = |row: usize| &self.points[row * self.columns..][columns.clone()];
-        let points = rows.clone().flat_map(part).copied().collect();
+        let [columns, rows, sections] = crop.ranges([self.columns, self.rows, self.sections])?;
+        let row = |row: usize| &self.points[row * self.columns..][columns.clone()];
+        let section = |section: usize| rows.clone().flat_map(move |at| row(section * self.rows + at));
+        let points = sections.clone().flat_map(section).copied().collect();
         let grid = match self.grid {
-            Grid::Voxels(..) => Grid::Voxels([columns.len(), rows.len(), 1], BVec3::FALSE),
+            Grid::Voxels(..) => Grid::Voxels([columns.len(), rows.len(), sections.len()], BVec3::FALSE),
             Grid::Hexagons(hexagons) => Grid::Hexagons(Hexagons {
                 half_columns: (2 * columns.len()).min(hexagons.half_columns - 2 * columns.start),
                 rows: rows.len(),
@@ -128,6 +138,7 @@ impl PointGrid {
             grid,
             columns: columns.len(),
             rows: rows.len(),
+            sections: sections.len(),
             first: [x + columns.start as f64 * self.step[0], y + rows.start as f64 * self.step[1]],
             points,
             ..self

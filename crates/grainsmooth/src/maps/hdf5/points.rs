@@ -19,6 +19,8 @@ struct Maker {
     is_counted: bool,
     quality: &'static str,
     confidence: Option<&'static str>,
+    /// The phase of each point.
+    phase: &'static str,
     /// Names in the header: columns, rows, steps along x and y.
     grid: [&'static str; 4],
     /// The group of the phases, and their names.
@@ -28,7 +30,7 @@ struct Maker {
     is_turned: bool,
 }
 
-const MAKERS: [Maker; 3] = [
+const MAKERS: [Maker; 5] = [
     Maker {
         angles: &["Euler"],
         is_in_degrees: false,
@@ -36,6 +38,7 @@ const MAKERS: [Maker; 3] = [
         is_counted: false,
         quality: "Band Contrast",
         confidence: None,
+        phase: "Phase",
         grid: ["X Cells", "Y Cells", "X Step", "Y Step"],
         phases: ["Phases", "Phase Name"],
         symmetry: |file, phase| Ok(number(file, phase, "Laue Group")?.and_then(whole).and_then(hkl_symmetry)),
@@ -48,6 +51,7 @@ const MAKERS: [Maker; 3] = [
         is_counted: false,
         quality: "IQ",
         confidence: Some("CI"),
+        phase: "Phase",
         grid: ["nColumns", "nRows", "Step X", "Step Y"],
         phases: ["Phase", "MaterialName"],
         symmetry: |file, phase| {
@@ -63,12 +67,46 @@ const MAKERS: [Maker; 3] = [
         is_counted: true,
         quality: "RadonQuality",
         confidence: None,
+        phase: "Phase",
         grid: ["NCOLS", "NROWS", "XSTEP", "YSTEP"],
         phases: ["Phases", "Name"],
         symmetry: |file, phase| Ok(number(file, phase, "IT")?.and_then(whole).and_then(of_space_group)),
         is_turned: false,
     },
+    // What DREAM.3D makes of EDAX's text, and of Oxford's: .h5ebsd.
+    Maker {
+        angles: &["Phi1", "Phi", "Phi2"],
+        is_in_degrees: false,
+        places: ["X Position", "Y Position"],
+        is_counted: false,
+        quality: "Image Quality",
+        confidence: Some("Confidence Index"),
+        phase: "PhaseData",
+        grid: ["NCOLS_ODD", "NROWS", "XSTEP", "YSTEP"],
+        phases: ["Phases", "MaterialName"],
+        symmetry: |file, phase| {
+            let code = number(file, phase, "Symmetry")?;
+            Ok(code.and_then(|code| ang::symmetry(&code.to_string())))
+        },
+        is_turned: false,
+    },
+    Maker {
+        angles: &["Euler1", "Euler2", "Euler3"],
+        is_in_degrees: true,
+        places: ["X", "Y"],
+        is_counted: false,
+        quality: "BC",
+        confidence: None,
+        phase: "Phase",
+        grid: ["XCells", "YCells", "XStep", "YStep"],
+        phases: ["Phases", "PhaseName"],
+        symmetry: |file, phase| Ok(number(file, phase, "LaueGroup")?.and_then(whole).and_then(hkl_symmetry)),
+        is_turned: true,
+    },
 ];
+
+/// The numbers of sections in a file of DREAM.3D that are stacked from the last one down.
+const HIGH_TO_LOW: f64 = 1.0;
 
 /// The points of the only map in a file; nothing where it has none.
 ///
@@ -79,11 +117,14 @@ pub(super) fn read(file: &Hdf5) -> Result<Option<PointList>, MapProblem> {
     let mut found = Vec::new();
     for maker in &MAKERS {
         let groups = file.groups().filter(|group| maker.angles.iter().all(|name| has(group, name)));
-        found.extend(groups.filter(|group| has(group, "Phase")).map(|group| (maker, group)));
+        found.extend(groups.filter(|group| has(group, maker.phase)).map(|group| (maker, group)));
     }
     // Oxford puts what was computed later beside what was measured.
     if found.len() > 1 && found.iter().any(|(_, group)| group.ends_with("EBSD/Data")) {
         found.retain(|(_, group)| group.ends_with("EBSD/Data"));
+    }
+    if number(file, "", "Z Resolution")?.is_some() {
+        return sections(file, &found);
     }
     match found[..] {
         [] => Ok(None),
@@ -109,6 +150,29 @@ pub(super) fn solved_phase(number: f64, angles: [f64; 3], confidence: Option<f64
     is_solved.then_some(phase)
 }
 
+/// The sections of an .h5ebsd file, in groups that are named by their numbers.
+///
+/// <https://github.com/BlueQuartzSoftware/DREAM3D/blob/develop/Documentation/ReferenceManual/3_SupportedFileFormats/H5EbsdFile.md>
+fn sections(file: &Hdf5, found: &[(&Maker, &str)]) -> Result<Option<PointList>, MapProblem> {
+    let mut numbered: Vec<(u64, &Maker, &str)> = found
+        .iter()
+        .filter_map(|(maker, group)| Some((parent(group).parse().ok()?, *maker, *group)))
+        .collect();
+    numbered.sort_by_key(|(number, ..)| *number);
+    if number(file, "", "Stacking Order")? == Some(HIGH_TO_LOW) {
+        numbered.reverse();
+    }
+    let thickness = number(file, "", "Z Resolution")?.filter(|step| step.is_finite() && *step > 0.0);
+    let section =
+        |(number, maker, group): &(u64, &Maker, &str)| Ok((number.to_string(), points(file, maker, group)?));
+    let found = numbered.iter().map(section).collect::<Result<Vec<_>, MapProblem>>()?;
+    match <[_; 1]>::try_from(found) {
+        Ok([(_, list)]) => Ok(Some(list)),
+        Err(found) if found.is_empty() => Ok(None),
+        Err(found) => PointList::of_sections(found, thickness).map(Some),
+    }
+}
+
 fn points(file: &Hdf5, maker: &Maker, group: &str) -> Result<PointList, MapProblem> {
     let header = within(parent(group), "Header");
     let head_number = |name: &str| number(file, &header, name);
@@ -121,7 +185,7 @@ fn points(file: &Hdf5, maker: &Maker, group: &str) -> Result<PointList, MapProbl
     let phases = phases(file, maker, &within(&header, maker.phases[0]))?;
     let array = |name: &str| file.numbers(&within(group, name));
     let needed = |name: &str| array(name)?.ok_or_else(|| damaged(format!("it has no array {group}/{name}")));
-    let phase_of = needed("Phase")?;
+    let phase_of = needed(maker.phase)?;
     let count = phase_of.len();
     let of_count = |numbers: Vec<f64>, name: &str, each: usize| match numbers.len() == each * count {
         true => Ok(numbers),
@@ -174,7 +238,7 @@ fn points(file: &Hdf5, maker: &Maker, group: &str) -> Result<PointList, MapProbl
     // Outside what was scanned there are points that stand nowhere.
     let points = (0..count).map(point).filter(|point| point.place.iter().all(|along| along.is_finite()));
     let points = points.collect();
-    Ok(PointList { phases, points, head })
+    Ok(PointList::of_plane(phases, points, head))
 }
 
 /// The phases of a header, by the numbers that their groups are named with.

@@ -50,7 +50,7 @@ pub(crate) fn read(text: &str) -> Result<PointList, Fault> {
         }
     };
     let points = rows.iter().zip(&lines).map(point).collect();
-    Ok(PointList { phases, points, head: grid })
+    Ok(PointList::of_plane(phases, points, grid))
 }
 
 fn read_head(head: &str, phases: &mut Vec<MapPhase>, grid: &mut HeadGrid) {

@@ -55,7 +55,7 @@ pub(in super::super) fn read(source: &Source<'_>) -> Result<PointList, MapProble
     };
     let points = records.chunks_exact(record.length).take(columns * rows).enumerate().map(point).collect();
     let told = HeadGrid { columns: Some(columns), rows: Some(rows), step: Some(step) };
-    Ok(PointList { phases, points, head: told })
+    Ok(PointList::of_plane(phases, points, told))
 }
 
 /// Groups of lines `key=value`, each group after its name in brackets.

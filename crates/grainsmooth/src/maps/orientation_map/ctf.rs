@@ -44,7 +44,7 @@ pub(crate) fn read(text: &str) -> Result<PointList, Fault> {
     let lines: Vec<(usize, &str)> = lines.filter(|(_, text)| !text.trim().is_empty()).collect();
     let points = lines.par_iter().map(|(line, text)| places.point(*line, text, &phases));
     let points = points.collect::<Result<_, Fault>>()?;
-    Ok(PointList { phases, points, head })
+    Ok(PointList::of_plane(phases, points, head))
 }
 
 /// The phase of a line: lattice, angles, name and number of the Laue group.

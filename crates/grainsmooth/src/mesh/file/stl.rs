@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::io::{self, Cursor, Write};
+use std::path::Path;
 
 use glam::{DVec3, Vec3};
 
@@ -57,7 +58,7 @@ pub(crate) fn check_range(mut points: impl Iterator<Item = DVec3>) -> io::Result
 }
 
 /// Reads triangles and merges corners whose coordinates are exactly equal, in the order in which they first occur.
-pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
+pub(crate) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     let mut file = Cursor::new(for_stl_io(bytes));
     let problem = |error| MeshFileProblem::corrupt("STL", error);
     let mut mesh = MeshFile::default();
@@ -108,6 +109,17 @@ fn is_binary(bytes: &[u8]) -> bool {
 }
 
 impl MeshFileProblem {
+    /// Of one file of several.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        match self {
+            Self::Corrupt { format, what } => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                Self::Corrupt { format, what: format!("{name}: {what}") }
+            }
+            other => other,
+        }
+    }
+
     fn at_triangle(self, triangle: usize) -> Self {
         match self {
             Self::Corrupt { format, what } => {
