@@ -138,7 +138,7 @@ fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<(
         Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
         Cells::TrianglesOf { count, triangle } => (0..count).try_for_each(|cell| visit(&triangle(cell))),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
-        Cells::Elements(kind, points) => points.chunks(kind.point_count()).try_for_each(|cell| visit(cell)),
+        Cells::Elements(kind, points) => points.chunks(kind.point_count()).try_for_each(visit),
         Cells::Vertices(_) => Ok(()),
     }
 }
