@@ -15,7 +15,7 @@ use crate::diagram::united_vertices::UnitedVertices;
 use crate::diagram::whole_cells::unwrapped;
 use crate::exact::generator::Generator;
 use crate::sites::search::Search;
-use crate::{CellId, Dimension, PeriodicVertex, Side, Tessellation, Translation, VertexId};
+use crate::{Dimension, PeriodicVertex, Side, Tessellation, Translation, VertexId};
 
 /// Cuts all cells and makes one complex of them; `seeds` and the result's cells are in the order of the input.
 pub(crate) fn merge(search: &Search, seeds: &[DVec3]) -> Tessellation {
@@ -58,12 +58,8 @@ fn push_tile(
     let Tessellation { vertices, face_sides, face_starts, face_corners, .. } = tessellation;
     let before = face_corners.len();
     let corner = |corner: &u32| VertexId(numbers[*corner as usize].vertex);
-    let sides = |sides: &[Generator; 2]| {
-        sides.map(|generator| match search.ids().get(generator.0 as usize) {
-            Some(id) => Side::Cell(CellId(*id)),
-            None => Side::of(search.end(generator), Translation::ZERO),
-        })
-    };
+    let sides =
+        |sides: &[Generator; 2]| sides.map(|generator| Side::of(search.end(generator), Translation::ZERO));
     rayon::join(
         || {
             push_positions(vertices, tile, numbers);

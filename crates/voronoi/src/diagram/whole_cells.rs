@@ -3,6 +3,7 @@
 //! Each face that joins a cell to a moved one gets its copy at the other cell, so that all cells are whole, and copies are told by
 //! their originals and a translation.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
@@ -121,6 +122,8 @@ struct VertexNumbering {
     original_of: Vec<VertexId>,
     /// All but unmoved originals, sorted, with their ids.
     moved: Vec<NumberedVertex>,
+    /// Those of vertex v of the torus are `moved[moved_starts[v]..moved_starts[v + 1]]`.
+    moved_starts: Vec<u32>,
 }
 
 #[derive(Clone, Copy)]
@@ -133,39 +136,41 @@ impl VertexNumbering {
     fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
         let is_used: Vec<AtomicBool> = (0..vertex_count).map(|_| AtomicBool::new(false)).collect();
         // Of a corner, what there is to note: where it is not moved, that it is used.
-        let note = |corner: PeriodicVertex| match corner.translation {
+        let note = |corner: PeriodicVertex, moved: &mut Vec<PeriodicVertex>| match corner.translation {
             Translation::ZERO => {
-                is_used[corner.vertex as usize].store(true, Ordering::Relaxed);
-                None
-            }
-            _ => Some(corner),
-        };
-        let moved = faces.par_iter().flat_map_iter(|(ends, corners)| {
-            let back = match ends[1] {
-                FaceEnd::Cell(Image { translation, .. }) if translation != Translation::ZERO => {
-                    Some(Translation::ZERO - translation)
+                let is_used = &is_used[corner.vertex as usize];
+                // Most are noted already; only to read leaves memory shared among threads.
+                if !is_used.load(Ordering::Relaxed) {
+                    is_used.store(true, Ordering::Relaxed);
                 }
-                _ => None,
-            };
-            let copies =
-                back.into_iter().flat_map(move |back| corners.iter().map(move |corner| corner.moved(back)));
-            corners.iter().copied().chain(copies).filter_map(note)
-        });
-        let mut moved: Vec<PeriodicVertex> = moved.collect();
+            }
+            _ => moved.push(corner),
+        };
+        let with_moved = |mut moved: Vec<PeriodicVertex>,
+                          (ends, corners): ([FaceEnd; 2], &[PeriodicVertex])| {
+            corners.iter().for_each(|corner| note(*corner, &mut moved));
+            let back = Translation::ZERO - ends[1].translation();
+            if back != Translation::ZERO {
+                corners.iter().for_each(|corner| note(corner.moved(back), &mut moved));
+            }
+            moved
+        };
+        let parts: Vec<Vec<PeriodicVertex>> = faces.par_iter().fold(Vec::new, with_moved).collect();
+        let mut moved = parts.concat();
         moved.par_sort_unstable();
         moved.dedup();
         let mut numbering = Self {
             originals: Vec::with_capacity(vertex_count),
             original_of: Vec::with_capacity(vertex_count),
-            moved: Vec::new(),
+            moved: Vec::with_capacity(moved.len()),
+            moved_starts: starts_by_vertex(&moved, vertex_count),
         };
         let id = |count: usize| VertexId(u32::try_from(count).expect("vertex ids fit 32 bits"));
         for (vertex, is_used) in (0u32..).zip(is_used) {
             let original = if is_used.into_inner() {
                 Some(PeriodicVertex { vertex, translation: Translation::ZERO })
             } else {
-                let first = moved.partition_point(|at| at.vertex < vertex);
-                moved.get(first).copied().filter(|at| at.vertex == vertex)
+                moved[numbering.moved_range(vertex)].first().copied()
             };
             numbering.original_of.push(id(numbering.originals.len()));
             numbering.originals.extend(original);
@@ -202,7 +207,25 @@ impl VertexNumbering {
         if at.translation == Translation::ZERO {
             return self.original_of[at.vertex as usize];
         }
-        let found = self.moved.binary_search_by_key(&at, |known| known.moved);
-        self.moved[found.expect("all corners were numbered")].id
+        let mut places = self.moved[self.moved_range(at.vertex)].iter();
+        places.find(|known| known.moved == at).expect("all corners were numbered").id
     }
+
+    /// Where those of a vertex of the torus stand among all that are moved.
+    fn moved_range(&self, vertex: u32) -> Range<usize> {
+        let vertex = vertex as usize;
+        self.moved_starts[vertex] as usize..self.moved_starts[vertex + 1] as usize
+    }
+}
+
+/// Where the entries of each vertex start among all, which are sorted, and after the last vertex their number.
+fn starts_by_vertex(sorted: &[PeriodicVertex], vertex_count: usize) -> Vec<u32> {
+    let mut starts = vec![0; vertex_count + 1];
+    for at in sorted {
+        starts[at.vertex as usize + 1] += 1;
+    }
+    for vertex in 0..vertex_count {
+        starts[vertex + 1] += starts[vertex];
+    }
+    starts
 }

@@ -139,11 +139,6 @@ impl<'a> Search<'a> {
         &self.tiles
     }
 
-    /// The seeds' indices in the user's input.
-    pub(crate) fn ids(&self) -> &[u32] {
-        &self.ids
-    }
-
     /// Of each seed in the user's order, its index in this one.
     pub(crate) fn indices(&self) -> Vec<u32> {
         let mut indices = vec![0; self.ids.len()];
@@ -154,7 +149,11 @@ impl<'a> Search<'a> {
     }
 
     /// What lies beyond a generator's plane, in the user's numbering of cells.
+    #[inline]
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
+        if let Some(id) = self.ids.get(generator.0 as usize) {
+            return FaceEnd::cell(*id);
+        }
         end(&self.ids, &self.layers[self.layers.len() - 1].images, generator)
     }
 
