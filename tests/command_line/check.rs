@@ -182,8 +182,8 @@ fn settings_are_not_searched_for_in_the_names_of_files() {
     let workplace = Workplace::new();
     let folder = "run --box 2 2 2.csv --periodic x,y,z --names neper --domain sphere -o ";
     fs::create_dir(workplace.path(folder)).unwrap();
-    workplace.put(&format!("{folder}/seeds.xyz"), "0.2 0.3 0.4\n0.7 0.8 0.6\n0.3 0.9 0.1\n");
-    let seeds = format!("{folder}/seeds.xyz");
+    workplace.put(&format!("{folder}/seeds.csv"), "0.2 0.3 0.4\n0.7 0.8 0.6\n0.3 0.9 0.1\n");
+    let seeds = format!("{folder}/seeds.csv");
     workplace.command("-n 0 -o a.vtk --seeds-file").arg(seeds).assert().success();
     let good = report(&workplace, "a.vtk", 0);
     assert!(good["volume_error"].as_f64().unwrap() < 1e-9, "{good}");
