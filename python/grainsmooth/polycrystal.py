@@ -200,7 +200,7 @@ class Polycrystal:
             raise ValueError(f"labels: give an array of shape (nx, ny, nz) or (nx, ny), not {array.shape}")
         if decimate is not None and not 0 <= decimate < np.inf:
             raise ValueError(f"decimate: give a finite number of voxels, 0 or more, not {decimate}")
-        if parts not in ("keep", "split"):
+        if not isinstance(parts, str) or parts not in ("keep", "split"):
             raise ValueError(f"parts: give 'keep' or 'split', not {parts!r}")
         axes = _inputs.text("periodic", periodic).replace(",", "")
         if not set(axes) <= set("xyz"[: array.ndim]):
