@@ -82,7 +82,7 @@ fn the_phases_of_divided_grains_keep_their_shares() {
     let phases = "--phase a:0.7 --phase b:0.3,texture=goss(5) --seeds 20 -n 0 --relax 0.1";
     workplace.run(&format!(
         "{phases} --inside b:lamellae(width=0.1) --inside a:voronoi(diameter=0.2) -o a.vtm -o a.vtp -o a.vti --voxels 4 4 4 \
-         --json-summary s.json --cells-csv c.csv --stats t.csv --grains-dir each --picture p.png --color-by phase --report r.html"
+         --json-summary s.json --cells-csv c.csv --stats t.csv --grains-dir each --picture p.png --picture-size 200 200 --color-by phase --report r.html"
     ));
     let summary = json(&workplace, "s.json");
     for phase in summary["phases"].as_array().unwrap() {

@@ -228,7 +228,9 @@ fn pixels_give_lines() {
     let workplace = Workplace::new();
     let labels: Vec<u8> = (0..20 * 15).map(|pixel| u8::from(pixel / 15 > pixel % 15)).collect();
     workplace.put("map.npy", npy(&[20, 15], &labels));
-    let said = workplace.run("smooth map.npy --spacing 0.5 0.25 -o a.vtp --picture a.png --report a.html");
+    let said = workplace.run(
+        "smooth map.npy --spacing 0.5 0.25 -o a.vtp --picture a.png --picture-size 200 200 --report a.html",
+    );
     assert!(said.contains("map         20 x 15 pixels\n"), "{said}");
     assert!(said.starts_with("grains      2 in [0, 10] x [0, 3.75]\n"), "{said}");
     workplace.command("check a.vtp").assert().success();

@@ -76,7 +76,9 @@ fn slices_leave_out_what_is_before_a_plane() {
     // A cut through the left grain alone leaves nothing of the right one, and shows its inside.
     workplace.put("two.csv", "0.25, 0.5, 0.5\n0.75, 0.5, 0.5\n");
     let shades = |at: f64| {
-        let run = format!("--seeds-file two.csv --relax 0 -n 0 --picture two.png --slice x={at} --quiet");
+        let run = format!(
+            "--seeds-file two.csv --relax 0 -n 0 --picture two.png --picture-size 500 400 --slice x={at} --quiet"
+        );
         workplace.run(&run);
         main_colors(&pixels(&workplace.path("two.png"))).len()
     };
@@ -129,7 +131,7 @@ fn facets_of_curved_domains_are_no_boundaries() {
 fn colors_show_sizes() {
     let workplace = Workplace::new();
     workplace.put("two.csv", "0.25, 0.5, 0.5\n0.4, 0.5, 0.5\n");
-    workplace.run("--seeds-file two.csv --relax 0 -n 0 --picture sizes.png --color-by diameter --quiet");
+    workplace.run("--seeds-file two.csv --relax 0 -n 0 --picture sizes.png --picture-size 500 400 --color-by diameter --quiet");
     // Viridis goes from (68, 1, 84) to (253, 231, 37); a face in shade has the same colour, darker.
     let colors = main_colors(&pixels(&workplace.path("sizes.png")));
     let is_shade_of = |pixel: &&Pixel, [r, g, b]: [f64; 3]| {
@@ -169,7 +171,7 @@ fn pictures_do_not_depend_on_threads() {
     let workplace = Workplace::new();
     for threads in [1, 2] {
         workplace.run(&format!(
-            "--seeds 30 -n 1 --explode 0.3 --picture {threads}.png --threads {threads} --quiet"
+            "--seeds 30 -n 1 --explode 0.3 --picture {threads}.png --picture-size 500 400 --threads {threads} --quiet"
         ));
     }
     assert!(workplace.bytes("1.png") == workplace.bytes("2.png"));

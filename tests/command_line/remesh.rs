@@ -98,7 +98,7 @@ fn phases_and_orientations_ride_along() {
     let before = of("0.json");
     for (from, to) in [("0", "1"), ("1", "2")] {
         workplace.run(&format!(
-            "remesh {from}.vtp --elements-per-grain 3 -o {to}.vtp --stats {to}.json --picture {to}.png --color-by phase"
+            "remesh {from}.vtp --elements-per-grain 3 -o {to}.vtp --stats {to}.json --picture {to}.png --picture-size 200 200 --color-by phase"
         ));
         let after = of(&format!("{to}.json"));
         assert!(after.len() == 40 && before.iter().zip(after).all(|(a, b)| (a - b).abs() < 1e-12), "{to}");

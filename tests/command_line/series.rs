@@ -92,7 +92,7 @@ fn grains_of_the_plane_vanish_as_others_grow() {
     let workplace = Workplace::new();
     let arguments = "--dim 2 --seeds 60 --periodic x,y -n 1 --free --relax 2 --texture random --phase a:0.5 --phase b:0.5 --arrays";
     let summary = workplace.run(&format!(
-        "{arguments} -o a.vtp -o a.vtm --series a.pvd --every 20 --stats a.json --json-summary s.json --picture a.png --report a.html"
+        "{arguments} -o a.vtp -o a.vtm --series a.pvd --every 20 --stats a.json --json-summary s.json --picture a.png --picture-size 200 200 --report a.html"
     ));
     let json = |name: &str| -> serde_json::Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
     let record = json("s.json");
