@@ -33,19 +33,22 @@ pub enum AngleClass {
     Shapes,
     /// Flat, or with short edges kept: triangles are as thin as the cells are.
     Unregularized,
+    /// Remeshed with triangles of one size.
+    Remeshed,
     /// In the plane, where there are no triangles.
     Plane,
 }
 
 impl AngleClass {
     /// All classes, in a few words.
-    pub const ALL: [(Self, &'static str); 7] = [
+    pub const ALL: [(Self, &'static str); 8] = [
         (Self::Walls, "walls"),
         (Self::Periodic, "periodic"),
         (Self::Cut, "cut at the box"),
         (Self::Equilibrium, "equilibrium"),
         (Self::Shapes, "grain shapes"),
         (Self::Unregularized, "flat or not regularized"),
+        (Self::Remeshed, "remeshed"),
         (Self::Plane, "plane"),
     ];
 }

@@ -48,8 +48,17 @@ pub fn certify(case: &Case, program: &Path, directory: &Path, out: &[u8]) -> any
             if out.is_empty() { "nothing on standard output" } else { "something on standard output" };
         certificate.faults.push(fault.to_owned());
     }
+    let mesh =
+        case.promise.mesh.as_ref().map(|name| check(name, program, directory, &mut certificate.faults));
+    let mesh = mesh.transpose()?;
     if let Some(name) = &case.promise.surface {
-        check(name, program, directory, &mut certificate)?;
+        let network = check(name, program, directory, &mut certificate.faults)?;
+        certificate.angles = angles(&network["triangle_angles"]);
+        measure(name, &network, program, directory, &mut certificate.faults)?;
+        if let Some(mesh) = mesh.filter(|mesh| mesh["grains"] != network["grains"]) {
+            let [filled, all] = [&mesh["grains"], &network["grains"]];
+            certificate.faults.push(format!("{filled} of {all} grains are filled"));
+        }
         if case.keeps_volumes {
             let cells = directory.join(CELLS);
             let error = match cells.exists() {
@@ -77,20 +86,31 @@ pub fn certify(case: &Case, program: &Path, directory: &Path, out: &[u8]) -> any
     Ok(certificate)
 }
 
-/// What `grainsmooth check` and `grainsmooth measure` say about a file.
-fn check(name: &str, program: &Path, directory: &Path, certificate: &mut Certificate) -> anyhow::Result<()> {
+/// What `grainsmooth check` says about a file.
+fn check(name: &str, program: &Path, directory: &Path, faults: &mut Vec<String>) -> anyhow::Result<Value> {
     let words = ["check", "--json", name].map(str::to_owned);
     let ended = process::run(program, &words, directory)?;
-    let report: Value = serde_json::from_slice(&ended.out).unwrap_or_default();
-    let report = &report["files"][0];
-    certificate.angles = angles(&report["triangle_angles"]);
+    let mut report: Value = serde_json::from_slice(&ended.out).unwrap_or_default();
+    let report = report["files"][0].take();
     if ended.code != 0 || report["good"] != true {
         let fault = report["faults"][0]["message"].as_str().unwrap_or(ended.err.trim());
         let count = report["faults"].as_array().map_or(0, Vec::len);
-        certificate.faults.push(format!("check ends with {}: {count} faults, first: {fault}", ended.code));
+        faults.push(format!("check of {name} ends with {}: {count} faults, first: {fault}", ended.code));
+    }
+    Ok(report)
+}
+
+/// Whether `grainsmooth measure` finds the grains of a good network.
+fn measure(
+    name: &str,
+    report: &Value,
+    program: &Path,
+    directory: &Path,
+    faults: &mut Vec<String>,
+) -> anyhow::Result<()> {
+    if report["good"] != true {
         return Ok(());
     }
-    // What is good can be measured, with the same grains.
     let words = ["measure", "--json", name].map(str::to_owned);
     let ended = process::run(program, &words, directory)?;
     let measured: Value = serde_json::from_slice(&ended.out).unwrap_or_default();
@@ -99,7 +119,7 @@ fn check(name: &str, program: &Path, directory: &Path, certificate: &mut Certifi
     let is_same = (of_grains / whole - 1.0).abs() <= MEASURED_TOLERANCE;
     if ended.code != 0 || measured["grains"] != report["grains"] || !is_same {
         let said = ended.err.trim();
-        certificate.faults.push(format!(
+        faults.push(format!(
             "measure ends with {}: {} grains of volume {of_grains} where {} have {whole} {said}",
             ended.code, measured["grains"], report["grains"]
         ));

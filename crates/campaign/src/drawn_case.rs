@@ -3,6 +3,7 @@
 use crate::case::{AngleClass, Case, Limits};
 use crate::domain::{self, Domain};
 use crate::draw::Draw;
+use crate::elements;
 use crate::mistake;
 use crate::options::Options;
 use crate::outputs::{self, Promise};
@@ -58,7 +59,10 @@ impl Case {
         };
         if draw.chance(MISTAKES) {
             mistake::make(draw, &mut case);
-        } else if draw.chance(CONFIG_FILES) {
+            return case;
+        }
+        elements::draw(draw, &domain, count, &mut case);
+        if draw.chance(CONFIG_FILES) {
             case.files.push(("run.toml".to_owned(), case.options.toml().into_bytes()));
             case.options = Options::default();
             case.options.set("config", ["run.toml"]);
@@ -343,6 +347,7 @@ mod tests {
         let cases: Vec<Case> = (0..2000).map(|index| Case::draw(1, index, Limits::USUAL)).collect();
         let is_given = |name: &str| cases.iter().any(|case| case.options.has(name));
         let options = [
+            "adapt-curvature",
             "arrays",
             "ascii",
             "aspect-ratio",
@@ -350,6 +355,7 @@ mod tests {
             "cells-csv",
             "cells-json",
             "chord-error",
+            "cohesive",
             "color-by",
             "config",
             "diameters",
@@ -359,6 +365,8 @@ mod tests {
             "drop-empty",
             "dry-run",
             "edge-length",
+            "element-size",
+            "elements-per-grain",
             "every",
             "explode",
             "faces",
@@ -379,12 +387,15 @@ mod tests {
             "names",
             "mobility",
             "no-mesh",
+            "order",
             "output",
             "periodic",
             "periodic-cut",
+            "periodic-equations",
             "phase",
             "picture",
             "picture-size",
+            "plane-state",
             "quiet",
             "regularize",
             "relax",
@@ -394,11 +405,14 @@ mod tests {
             "seeds",
             "seeds-file",
             "series",
+            "size-growth",
+            "solver-deck",
             "stats",
             "tension",
             "texture",
             "threads",
             "voxels",
+            "volume-mesh",
             "volumes",
             "vtk-encoding",
             "wall-tension",

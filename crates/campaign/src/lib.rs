@@ -10,6 +10,7 @@ mod certify;
 mod domain;
 mod draw;
 mod drawn_case;
+mod elements;
 mod mistake;
 mod options;
 mod outputs;

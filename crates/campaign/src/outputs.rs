@@ -12,6 +12,8 @@ pub struct Promise {
     pub stems: Vec<&'static str>,
     /// A surface file that `grainsmooth check` reads.
     pub surface: Option<String>,
+    /// A file of elements that fill grains, which `grainsmooth check` reads.
+    pub mesh: Option<String>,
     /// Whether something goes to standard output.
     pub prints: bool,
 }

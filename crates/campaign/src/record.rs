@@ -60,6 +60,9 @@ pub struct Record {
     pub first_percentile_angle: Option<f64>,
     /// Largest relative error of a grain's volume.
     pub volume_error: Option<f64>,
+    /// Whether all grains are filled with elements that are certified, where they were to be.
+    #[serde(default)]
+    pub filled: Option<bool>,
 }
 
 impl Record {
@@ -106,6 +109,9 @@ impl fmt::Display for Summary<'_> {
         for record in left.iter().take(10) {
             writeln!(out, "  {} ({})", record.left.join(", "), record.index)?;
         }
+        let to_fill = all.iter().filter_map(|record| record.filled);
+        let filled = to_fill.clone().filter(|filled| *filled).count();
+        writeln!(out, "filled grains   {filled} of {} runs", to_fill.count())?;
         write_angles(out, all)?;
         let errors = all.iter().filter_map(|record| record.volume_error);
         if let Some(error) = errors.max_by(f64::total_cmp) {

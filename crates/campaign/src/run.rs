@@ -77,6 +77,8 @@ fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
         least_angle: certificate.angles.map(|[least, _]| least),
         first_percentile_angle: certificate.angles.map(|[_, percentile]| percentile),
         volume_error: certificate.volume_error,
+        filled: (case.promise.mesh.is_some() && outcome != Outcome::Refused)
+            .then_some(outcome == Outcome::Good),
     };
     if let Some(keep) = slice.keep.as_ref().filter(|_| record.is_notable()) {
         let kept = keep.join(format!("{}-{index}", slice.seed));
