@@ -84,7 +84,7 @@ pub struct Remeshed {
 impl Network {
     /// The network with triangles of the size asked for, for the points of its finest level.
     ///
-    /// New points lie on the coarsest level whose edges, between points of the finest, have no more than 0.4 of that size on the mean. The finest should: with longer
+    /// New points lie on the coarsest level whose edges, between points of the finest, have no more than 0.4 of that size on the mean, or where nothing valid comes out there, on the finest. That should have such edges: with longer
     /// edges tetrahedra between the triangles get worse.
     ///
     /// Boundaries, triple lines and quadruple points stay what they are; elements are smaller where lines are short. Grains keep the volumes of their cells. Copies are
@@ -138,10 +138,29 @@ impl Network {
             }
         }
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
-        if self.domain().dimension() == Dimension::Two {
-            return plane::remeshed(self, points, size, cut, tuning);
+        let remeshed_on = |level: &Level| match self.domain().dimension() {
+            Dimension::Two => plane::remeshed(self, level, points, size, cut, tuning),
+            Dimension::Three => self.remeshed_on(level, points, size, cut, tuning),
+        };
+        let level = self.reference_level(points, size.length, tuning);
+        match remeshed_on(&level) {
+            // A level through some points of the finest may be folded where that is not.
+            Err(NetworkError::RemeshInvalid(_)) if level.vertex_count() < points.len() => {
+                remeshed_on(&self.finest_level())
+            }
+            remeshed => remeshed,
         }
-        let level = &*self.reference_level(points, size.length, tuning);
+    }
+
+    /// The network in space with new points on a level.
+    fn remeshed_on(
+        &self,
+        level: &Level,
+        points: &[DVec3],
+        size: &ElementSize,
+        cut: BVec3,
+        tuning: &RemeshTuning,
+    ) -> Result<Remeshed, NetworkError> {
         // A finer level has the vertices of a coarser one first.
         let points = &points[..level.vertex_count()];
         let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("boundaries in space have triangles") };

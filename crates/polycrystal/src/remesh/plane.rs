@@ -19,7 +19,7 @@ use crate::remesh::torus::Torus;
 use crate::remesh::{
     ElementSize, Faulty, RemeshTuning, Remeshed, positions_on_lines, shaped_parts, until_valid, volumes,
 };
-use crate::{Fault, Faults, GrainId, Mesh, Network, NetworkError, validate};
+use crate::{Fault, Faults, GrainId, Level, Mesh, Network, NetworkError, validate};
 use assembled::assemble;
 
 /// Triangles that fill grains in the plane.
@@ -47,12 +47,12 @@ impl PlaneMesh {
 /// As of [`Network::remeshed`], of a network in the plane.
 pub(super) fn remeshed(
     network: &Network,
+    lines: &Level,
     points: &[DVec3],
     size: &ElementSize,
     cut: BVec3,
     tuning: &RemeshTuning,
 ) -> Result<Remeshed, NetworkError> {
-    let lines = &*network.reference_level(points, size.length, tuning);
     // A finer level has the vertices of a coarser one first.
     let points = &points[..lines.vertex_count()];
     let torus = Torus::new(network, lines, points, cut)?;
