@@ -25,6 +25,10 @@ const LEAST_VERSION: [u32; 2] = [4, 8];
 /// Gmsh's algorithms, the better one first: HXT, then Delaunay, which fills what the first cannot.
 const ALGORITHMS: [(&str, &str); 2] = [("10", "HXT"), ("1", "Delaunay")];
 
+/// Gamma below which Gmsh makes tetrahedra better. Of 200 periodic grains with five elements to a diameter, a hundredth had one below 0.405, with Gmsh's own 0.3 below 0.371, in the same time; 0.4
+/// gave 0.424 in twice the time, 0.5 gave 0.434 in twenty times.
+const OPTIMIZED_BELOW: &str = "0.35";
+
 /// Time that Gmsh may take, and more for each triangle of the surface: a hundred times what HXT takes, which fills what 100 000 triangles enclose in 3 s. Where it takes longer it
 /// does not end at all.
 const TIME: Duration = Duration::from_secs(60);
@@ -109,7 +113,12 @@ impl Polycrystal {
 /// Runs Gmsh on the script of a surface; returns what it wrote. More threads make it slower, and another mesh.
 fn run(folder: &Path, algorithm: &str, limit: Duration) -> Result<String, String> {
     let result = folder.join("volume.msh");
-    let options = [("Mesh.Algorithm3D", algorithm), ("Mesh.Renumber", "0"), ("Mesh.Binary", "0")];
+    let options = [
+        ("Mesh.Algorithm3D", algorithm),
+        ("Mesh.OptimizeThreshold", OPTIMIZED_BELOW),
+        ("Mesh.Renumber", "0"),
+        ("Mesh.Binary", "0"),
+    ];
     let words = folder.join("gmsh.log");
     let refused = |cause: std::io::Error| cause.to_string();
     let said = File::create(&words).map_err(refused)?;

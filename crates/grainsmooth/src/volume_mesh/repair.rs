@@ -1,14 +1,21 @@
-//! The worst tetrahedra made better: points inside grains move, and inner edges of tetrahedra whose corners are all on boundaries are halved.
+//! Tetrahedra made better: points inside grains move to the middle of those around; those of the worst look for better places, and inner edges of tetrahedra whose corners are all on boundaries are halved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::{VolumeMesh, gamma};
+use super::{VolumeMesh, gamma, volume};
 
 /// Gamma below which the points around a tetrahedron look for better places, and below which its edges may be halved.
 const POOR: f64 = 0.25;
 const BAD: f64 = 0.12;
+
+/// Gamma that is good enough: the least of the tetrahedra around a point may fall to it where their mean grows. Of 200 periodic grains with five elements to a diameter, the mean of all grew from
+/// 0.726 to 0.742; two more sweeps added 0.001.
+const FAIR: f64 = 0.4;
+
+/// Shares of the way to the middle that are tried.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Rounds over all of them.
 const ROUNDS: usize = 6;
@@ -50,6 +57,7 @@ impl VolumeMesh {
             corners.iter().for_each(|corner| stars[*corner as usize].push(tetrahedron));
         }
         let mut repair = Repair { mesh: self, stars, fixed };
+        repair.smooth();
         for _ in 0..ROUNDS {
             let moved = repair.move_points();
             let halved = repair.halve_edges();
@@ -79,6 +87,37 @@ impl Repair<'_> {
 
     fn poor(&self, limit: f64) -> Vec<usize> {
         (0..self.mesh.tetrahedra.len()).filter(|tetrahedron| self.gamma(*tetrahedron) < limit).collect()
+    }
+
+    /// Moves points inside grains to the middle of the tetrahedra around, by volume, or some of the way there, where these are better on the mean.
+    fn smooth(&mut self) {
+        for point in self.mesh.surface_points..self.mesh.points.len() {
+            let star = &self.stars[point];
+            let start = self.mesh.points[point];
+            let gammas = |mesh: &VolumeMesh| {
+                let gammas = star.iter().map(|tetrahedron| gamma(mesh.corners(*tetrahedron)));
+                gammas.fold((0.0, f64::INFINITY), |(sum, least), gamma| (sum + gamma, gamma.min(least)))
+            };
+            let (mut sum, mut volumes) = (DVec3::ZERO, 0.0);
+            for tetrahedron in star {
+                let corners = self.mesh.corners(*tetrahedron);
+                let volume = volume(corners).abs();
+                sum += corners.iter().sum::<DVec3>() / 4.0 * volume;
+                volumes += volume;
+            }
+            if volumes == 0.0 {
+                continue;
+            }
+            let (before, least) = gammas(self.mesh);
+            let is_better = |share: &f64| {
+                self.mesh.points[point] = start.lerp(sum / volumes, *share);
+                let (after, least_after) = gammas(self.mesh);
+                after > before && least_after >= least.min(FAIR)
+            };
+            if !SHARES.iter().any(is_better) {
+                self.mesh.points[point] = start;
+            }
+        }
     }
 
     fn move_points(&mut self) -> bool {
@@ -178,6 +217,31 @@ mod tests {
     use polycrystal::GrainId;
 
     use super::*;
+
+    /// Eight tetrahedra between a point and the faces of an octahedron: the best place is the middle.
+    #[test]
+    fn a_point_goes_to_the_middle_of_what_is_around() {
+        let mut points: Vec<DVec3> = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).collect();
+        points.push(DVec3::new(0.3, -0.2, 0.25));
+        let faces = (0..8u32).map(|octant| [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2)]);
+        let tetrahedra = faces.map(|[x, y, z]| match (x + y + z) % 2 {
+            0 => [6, x, y, z],
+            _ => [6, y, x, z],
+        });
+        let mut mesh = VolumeMesh {
+            surface_points: 6,
+            points,
+            tetrahedra: tetrahedra.collect(),
+            grains: vec![GrainId(0); 8],
+            ..VolumeMesh::default()
+        };
+        let before = mesh.quality().expect("tetrahedra");
+        mesh.repair(&BTreeSet::new());
+        let after = mesh.quality().expect("tetrahedra");
+        assert!((mesh.grain_volumes(1)[0] - 4.0 / 3.0).abs() < 1e-12);
+        assert!(mesh.points[6].length() < 1e-12, "{}", mesh.points[6]);
+        assert!(after.mean > before.mean + 0.03 && after.least > before.least, "{before} {after}");
+    }
 
     /// Four corners nearly in a plane, whose inner edge has four tetrahedra around.
     #[test]
