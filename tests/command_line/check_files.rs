@@ -301,7 +301,11 @@ fn tetrahedra_are_checked_like_networks() {
         workplace.command("check a.inp").assert().code(FAILED);
     }
     for (from, to, message) in [
-        ("C3D4", "C3D8", "line 8: elements of the type C3D8 are not checked; give C3D4, C3D10 or COH3D6"),
+        (
+            "C3D4",
+            "C3D8",
+            "line 8: elements of the type C3D8 are not checked; give C3D4, C3D10 and COH3D6, or in the plane CPS3, CPE3, CPS6, CPE6 and COH2D4",
+        ),
         ("1, 2, 3, 4\n2", "1, 2, 3, 9\n2", "line 8: there is no node 9"),
         ("2, 1., 0., 0.", "1, 1., 0., 0.", "line 3: node 1 comes a second time"),
         ("5, 1., 1., 1.", "5, 1., 1., one", "line 6: 'one' is no number that fits here"),
@@ -313,7 +317,94 @@ fn tetrahedra_are_checked_like_networks() {
         assert_eq!(String::from_utf8(output.stderr).unwrap(), format!("error: a.inp: {message}\n"));
     }
     workplace.put("a.inp", "*NODE\n1, 0., 0., 0.\n");
-    let message =
-        "error: a.inp: holds no tetrahedra; give a volume mesh, or a network as .vtp, .vtu or .vtk\n";
+    let message = "error: a.inp: holds no tetrahedra, nor triangles in one plane; give a mesh that fills grains, or a network as .vtp, .vtu or .vtk\n";
+    workplace.command("check a.inp").assert().code(FAILED).stderr(message);
+    workplace.put("a.inp", TRIANGLES.replacen("1., 1.\n", "1., 1., 1.\n", 1));
+    workplace.command("check a.inp").assert().code(FAILED).stderr(message);
+}
+
+/// Two triangles with nodes of their own, each a grain, and a cohesive element between them, as a file for Abaqus.
+const TRIANGLES: &str = "\
+*NODE, NSET=NODES
+1, 0., 0.
+2, 1., 0.
+3, 0., 1.
+4, 1., 0.
+5, 1., 1.
+6, 0., 1.
+*ELEMENT, TYPE=CPS3, ELSET=ELEMENTS
+1, 1, 2, 3
+2, 4, 5, 6
+*ELEMENT, TYPE=COH2D4, ELSET=COHESIVE
+3, 3, 2, 4, 6
+*ELSET, ELSET=GRAIN_0
+1,
+*ELSET, ELSET=GRAIN_1
+2,
+*NSET, NSET=X0
+1, 3, 6
+*NSET, NSET=X1
+2, 4, 5
+*NSET, NSET=Y0
+1, 2, 4
+*NSET, NSET=Y1
+3, 5, 6
+*SURFACE, TYPE=ELEMENT, NAME=BOUNDARY_0
+1, S2
+*SURFACE, TYPE=ELEMENT, NAME=X0
+1, S3
+*SURFACE, TYPE=ELEMENT, NAME=X1
+2, S1
+*SURFACE, TYPE=ELEMENT, NAME=Y0
+1, S1
+*SURFACE, TYPE=ELEMENT, NAME=Y1
+2, S2
+";
+
+#[test]
+fn triangles_that_fill_grains_are_checked() {
+    let workplace = Workplace::new();
+    workplace.put("a.inp", TRIANGLES);
+    let good = report(&workplace, "a.inp", 0);
+    assert_eq!(good["volumes"].to_string(), "[[0,0.5],[1,0.5]]");
+    assert_eq!([&good["dimension"], &good["elements"], &good["cohesive_elements"]], [2, 2, 1]);
+    assert!((good["quality"]["least_angle"].as_f64().unwrap() - 45.0).abs() < 1e-12);
+    let said = workplace.command("check a.inp").assert().success().get_output().clone();
+    let said = String::from_utf8(said.stdout).unwrap();
+    assert!(said.contains("2 triangles of order 1, 1 cohesive elements") && said.contains("area        1\n"));
+    for (from, to, kind, message) in [
+        ("2, 4, 5, 6", "2, 5, 4, 6", "inverted", "triangle 2 has the area -5.000e-1"),
+        (
+            "1, S2\n",
+            "",
+            "incomplete set",
+            "1 edges between grains or at the exterior are in no set, such as that at node 2",
+        ),
+        ("1, S3\n", "", "incomplete set", "the set X0 lacks 1 edges, such as that at node 1"),
+        ("X1\n2, 4, 5", "X1\n2, 4", "incomplete set", "the set X1 lacks 1 nodes, such as that at node 5"),
+        (
+            "3, 3, 2, 4, 6\n",
+            "3, 3, 2, 6, 4\n",
+            "torn",
+            "a cohesive element joins the nodes 3 and 4, which are apart",
+        ),
+        (
+            "3, 3, 2, 4, 6\n",
+            "3, 1, 2, 2, 1\n",
+            "torn",
+            "edges at nodes 2, 4 lie on each other, and no cohesive element joins them",
+        ),
+    ] {
+        assert!(TRIANGLES.contains(from), "{from}");
+        workplace.put("a.inp", TRIANGLES.replacen(from, to, 1));
+        let bad = report(&workplace, "a.inp", FAILED);
+        let faults = bad["faults"].as_array().unwrap();
+        assert!(
+            faults.iter().any(|fault| fault["kind"] == kind && fault["message"] == message),
+            "{faults:?}"
+        );
+    }
+    workplace.put("a.inp", TRIANGLES.replacen("2, 4, 5, 6", "2, 4, 5, 6, 1", 1));
+    let message = "error: a.inp: line 10: an element has 4 nodes in place of 3\n";
     workplace.command("check a.inp").assert().code(FAILED).stderr(message);
 }

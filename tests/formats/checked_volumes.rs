@@ -1,15 +1,16 @@
-//! `grainsmooth check` of tetrahedra: what the program writes is good, and what is damaged is found.
+//! `grainsmooth check` of elements that fill grains: what the program writes is good, and what is damaged is found.
 
 use std::path::Path;
 
 use glam::BVec3;
 use grainsmooth::{Config, Output, PeriodicCut, VolumeFile, VolumeReport};
 
+use crate::plane;
 use crate::tetrahedra::{BOXES, coarse, filled};
 use crate::workplace::{BOX, write};
 
 fn report(path: &Path) -> VolumeReport {
-    VolumeReport::new(path, &VolumeFile::read(path).unwrap().expect("tetrahedra"))
+    VolumeReport::new(path, &VolumeFile::read(path).unwrap().expect("elements"))
 }
 
 /// The kinds of faults of a file with some content, once each.
@@ -55,6 +56,44 @@ fn what_is_written_is_good() {
             assert!(found.volume_error.unwrap().abs() < 1e-9 && (BOX.element_product() - 3.0).abs() < 1e-12);
             let has_ties = periodic.any() && name != "a.bdf";
             assert_eq!(found.tied_nodes > 0, has_ties, "{name}");
+        }
+    }
+}
+
+#[test]
+fn triangles_that_are_written_are_good() {
+    for ((periodic, periodic_cut), order) in
+        BOXES.into_iter().flat_map(|case| [1, 2].map(|order| (case, order)))
+    {
+        let mut config = plane::coarse(periodic, periodic_cut);
+        config.file.volume.order = Some(order);
+        config.file.volume.volume_mesh = true;
+        config.file.volume.periodic_equations = periodic.any();
+        let mut polycrystal = plane::filled(&config);
+        let count = polycrystal.plane_mesh.as_ref().unwrap().mesh.triangles.len();
+        let folder = tempfile::tempdir().unwrap();
+        let good = |polycrystal: &grainsmooth::Polycrystal, name: &str| {
+            let path = folder.path().join(name);
+            polycrystal.write(&Output::check(&path).unwrap()).unwrap();
+            let found = report(&path);
+            assert!(found.good && found.faults.is_empty(), "{found}");
+            assert_eq!((found.dimension, found.grains, found.elements), (2, 12, count), "{name}");
+            assert_eq!(found.order, order);
+            let areas = found.volumes.iter().zip(polycrystal.network.cell_volumes());
+            // Curved edges take from areas or add to them.
+            let tolerance = if order == 2 { 0.05 } else { 1e-9 };
+            areas.for_each(|((_, area), wanted)| assert!((area / wanted - 1.0).abs() < tolerance));
+            assert!(found.volume_error.unwrap().abs() < 1e-9);
+            let has_ties = periodic.any() && !name.ends_with("bdf");
+            assert_eq!(found.tied_nodes > 0, has_ties, "{name}");
+            found.cohesive_elements
+        };
+        for name in ["a.inp", "a.msh", "a.vtu", "a.bdf"] {
+            assert_eq!(good(&polycrystal, name), 0);
+        }
+        if order == 1 {
+            polycrystal.file_mut().volume.cohesive = true;
+            assert!(good(&polycrystal, "cohesive.inp") > 20);
         }
     }
 }
@@ -125,7 +164,7 @@ fn what_is_damaged_is_found() {
     let path = folder.path().join("tied.inp");
     std::fs::write(&path, wrong).unwrap();
     let error = VolumeFile::read(&path).unwrap_err().to_string();
-    assert!(error.contains("in the same way in all three directions"), "{error}");
+    assert!(error.contains("in the same way in all directions"), "{error}");
 
     // Cut off anywhere, a file is refused or found to be bad, and nothing panics.
     for share in 1..20 {

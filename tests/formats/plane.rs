@@ -17,7 +17,7 @@ use crate::tools::text;
 use crate::workplace::{BOX, PLANE, SPACE, config, write};
 
 /// Few grains at equilibrium, with large elements.
-fn coarse(periodic: BVec3, periodic_cut: PeriodicCut) -> Config {
+pub fn coarse(periodic: BVec3, periodic_cut: PeriodicCut) -> Config {
     let mut config = Config {
         seeds: SeedSource::Random { count: 12 },
         relaxation: Some(Relaxation::Equilibrium),
@@ -30,7 +30,7 @@ fn coarse(periodic: BVec3, periodic_cut: PeriodicCut) -> Config {
     config
 }
 
-fn filled(config: &Config) -> Polycrystal {
+pub fn filled(config: &Config) -> Polycrystal {
     make_polycrystal(config, &|_, _, _| ()).unwrap().completed(&|_, _, _| ()).unwrap()
 }
 

@@ -55,7 +55,7 @@ pub use voronoi;
 pub use check::report::{
     CheckReport, Expectation, GrainAgreement, MapAgreement, ReportedFault, SizesFound, Statistic,
 };
-pub use check::volume::VolumeReport;
+pub use check::volume::{ElementQuality, VolumeReport};
 pub use config::check::ConfigError;
 pub use config::elements::ElementOptions;
 pub use config::files::{FileOptions, StlEncoding};
@@ -110,7 +110,7 @@ pub use input::tess::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
 pub use input::texture_file::{OrientationList, read_disorientation_file, read_texture_file};
-pub use input::volume_file::{Tie, VolumeFile};
+pub use input::volume_file::VolumeFile;
 pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
 pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
 pub use maps::map_slice::MapSlice;

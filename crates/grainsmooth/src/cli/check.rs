@@ -9,7 +9,7 @@ use crate::MapOptions;
 /// Check grain networks: grains closed, orientation consistent, no folds, crossings or duplicate points; and volume meshes
 ///
 /// Reads triangles (in the plane: lines) with two labels each, from the cell array FaceLabels, boundary_labels or
-/// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them. Also reads tetrahedra from .inp, .msh, .bdf and .vtu: they must fit together, none inverted, sets of grains, sides and
+/// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them. Also reads tetrahedra, in the plane triangles that fill grains, from .inp, .msh, .bdf and .vtu: they must fit together, none inverted, sets of grains, sides and
 /// boundaries must be complete, and nodes tied to others whole periods away.
 #[derive(Debug, Args)]
 #[command(

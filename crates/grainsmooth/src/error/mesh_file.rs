@@ -54,9 +54,11 @@ pub enum MeshFileProblem {
         /// The largest side of its bounding box.
         width: f64,
     },
-    /// The file has no tetrahedra.
-    #[error("holds no tetrahedra; give a volume mesh, or a network as .vtp, .vtu or .vtk")]
-    NoTetrahedra,
+    /// The file has no elements that fill grains.
+    #[error(
+        "holds no tetrahedra, nor triangles in one plane; give a mesh that fills grains, or a network as .vtp, .vtu or .vtk"
+    )]
+    NoElements,
     /// The file has no faces.
     #[error("holds no faces; give a surface mesh")]
     NoFaces,

@@ -3,9 +3,10 @@
 use polycrystal::{BoundaryId, Corners, Elements, Level};
 
 /// A shape of elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum ElementShape {
     Triangle,
+    #[default]
     Tetrahedron,
 }
 
@@ -19,6 +20,19 @@ const TRIANGLE_FACES: [&[usize]; 3] = [&[0, 1], &[1, 2], &[2, 0]];
 pub(crate) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
 impl ElementShape {
+    /// Number of axes of the space that elements fill.
+    pub(crate) fn axes(self) -> usize {
+        self.corner_count() - 1
+    }
+
+    /// An element, several of them, and a face of one, in words.
+    pub(crate) fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Triangle => ["triangle", "triangles", "edge"],
+            Self::Tetrahedron => ["tetrahedron", "tetrahedra", "face"],
+        }
+    }
+
     /// Number of corners.
     pub(crate) fn corner_count(self) -> usize {
         match self {
@@ -60,6 +74,11 @@ pub(crate) fn face_key(corners: &[u32]) -> [u32; 3] {
     key[..corners.len()].copy_from_slice(corners);
     key.sort_unstable();
     key
+}
+
+/// The corners of a face by its key.
+pub(crate) fn corners_of_key(key: &[u32; 3]) -> &[u32] {
+    if key[2] == u32::MAX { &key[..2] } else { key }
 }
 
 /// The edges around a face: three of a triangle, one of a segment.

@@ -110,7 +110,7 @@ fn angle_and_shape([a, b, c]: [DVec3; 3]) -> (f64, f64) {
 
 /// A lower bound of the Jacobian determinant of a triangle of second order, as a share of what it is with straight edges: the least of the Bernstein coefficients of that quadratic polynomial.
 /// Middles are those of the edges 0 1, 1 2, 2 0.
-fn least_jacobian_share(corners: [DVec3; 3], middles: [DVec3; 3]) -> f64 {
+pub(crate) fn least_jacobian_share(corners: [DVec3; 3], middles: [DVec3; 3]) -> f64 {
     let middle = |a: usize, b: usize| match (a.min(b), a.max(b)) {
         (0, 1) => middles[0],
         (1, 2) => middles[1],

@@ -1,62 +1,91 @@
-//! Each tetrahedron by itself: not turned inside out, of one grain; and the volumes of grains.
+//! Each element by itself: not turned inside out, of one grain; and the volumes of grains, in the plane their areas.
 
-use std::array;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
 use super::{Found, VOLUME_TOLERANCE};
 use crate::VolumeFile;
-use crate::volume_mesh::curved::least_jacobian_share;
-use crate::volume_mesh::element_shape::EDGES;
-use crate::volume_mesh::{VolumeMesh, gamma, volume};
+use crate::volume_mesh::element_shape::ElementShape;
+use crate::volume_mesh::{curved, filled_plane, gamma, volume};
 
-/// Gamma below which rounding alone may turn an element inside out.
+/// Gamma, in the plane the shape of a triangle, below which rounding alone may turn an element inside out.
 const FLAT: f64 = 1e-12;
 
+/// The shape of an element, negative where it is turned inside out, and what it fills.
+fn shape_and_volume(corners: &[DVec3]) -> (f64, f64) {
+    match *corners {
+        [a, b, c, d] => (gamma([a, b, c, d]), volume([a, b, c, d])),
+        [a, b, c] => {
+            let area = area([a, b, c]);
+            let longest = [b - a, c - b, a - c].into_iter().map(DVec3::length_squared).fold(0.0, f64::max);
+            (if longest == 0.0 { 0.0 } else { area / longest }, area)
+        }
+        _ => (0.0, 0.0),
+    }
+}
+
+/// The area of a triangle, negative where it goes round clockwise.
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).z / 2.0
+}
+
+/// A lower bound of the Jacobian determinant of an element of second order, as a share of what it is with straight edges.
+fn least_jacobian(corners: &[DVec3], middles: &[DVec3]) -> f64 {
+    match (corners, middles) {
+        (&[a, b, c, d], &[e, f, g, h, i, j]) => {
+            curved::least_jacobian_share([a, b, c, d], [e, f, g, h, i, j])
+        }
+        (&[a, b, c], &[d, e, f]) => filled_plane::least_jacobian_share([a, b, c], [d, e, f]),
+        _ => 1.0,
+    }
+}
+
 pub(super) fn check(file: &VolumeFile, found: &mut Found) {
-    for (element, (nodes, number)) in file.tetrahedra.iter().zip(&file.element_numbers).enumerate() {
-        let corners = file.corners(element);
-        let middle = corners.iter().sum::<DVec3>() / 4.0;
+    let [one, _, _] = file.shape.words();
+    let mut middles = file.middles();
+    for (element, (nodes, number)) in file.elements().zip(&file.element_numbers).enumerate() {
+        let corners = file.places(nodes);
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let mut report = |kind, message| {
             let fault = found.push(kind, message, Some(middle));
             fault.elements = vec![u32::try_from(*number).unwrap_or(u32::MAX)];
         };
-        if (0..4).any(|k| nodes[..k].contains(&nodes[k])) {
-            report("inverted", format!("tetrahedron {number} has a node twice"));
+        let middles = middles.next();
+        if (0..nodes.len()).any(|k| nodes[..k].contains(&nodes[k])) {
+            report("inverted", format!("{one} {number} has a node twice"));
             continue;
         }
-        if gamma(corners) <= FLAT {
-            report("inverted", format!("tetrahedron {number} has the volume {:.3e}", volume(corners)));
-        } else if let Some(middles) = file.middles.get(element) {
-            let share = least_jacobian_share(corners, array::from_fn(|edge| file.place(middles[edge])));
+        let (shape, volume) = shape_and_volume(&corners);
+        if shape <= FLAT {
+            let what = if file.shape == ElementShape::Triangle { "area" } else { "volume" };
+            report("inverted", format!("{one} {number} has the {what} {volume:.3e}"));
+        } else if let Some(middles) = middles {
+            let share = least_jacobian(&corners, &file.places(middles));
             if share <= 0.0 {
                 let message = format!(
-                    "the Jacobian determinant of tetrahedron {number} may be {share:.3} of what it is with straight edges"
+                    "the Jacobian determinant of {one} {number} may be {share:.3} of what it is with straight edges"
                 );
                 report("inverted", message);
             }
         }
         match &file.grains[element][..] {
             [_] => {}
-            [] => report("no grain", format!("tetrahedron {number} is part of no grain")),
+            [] => report("no grain", format!("{one} {number} is part of no grain")),
             grains => {
                 let names: Vec<String> = grains.iter().map(|grain| grain.0.to_string()).collect();
-                report(
-                    "two grains",
-                    format!("tetrahedron {number} is part of the grains {}", names.join(" and ")),
-                );
+                report("two grains", format!("{one} {number} is part of the grains {}", names.join(" and ")));
             }
         }
     }
     check_middles(file, found);
 }
 
-/// Tetrahedra that share an edge have one node in its middle.
+/// Elements that share an edge have one node in its middle.
 fn check_middles(file: &VolumeFile, found: &mut Found) {
     let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
-    for (corners, middles) in file.tetrahedra.iter().zip(&file.middles) {
-        for (ends, middle) in EDGES.into_iter().zip(middles) {
+    for (corners, middles) in file.elements().zip(file.middles()) {
+        for (ends, middle) in file.shape.edges().iter().zip(middles) {
             let [a, b] = ends.map(|end| corners[end]);
             let first = *known.entry([a.min(b), a.max(b)]).or_insert(*middle);
             if first != *middle {
@@ -70,15 +99,17 @@ fn check_middles(file: &VolumeFile, found: &mut Found) {
     }
 }
 
-/// Volumes of all grains, compared with what the file says.
-pub(super) fn check_volumes(file: &VolumeFile, mesh: &VolumeMesh, found: &mut Found) -> Vec<(u32, f64)> {
+/// Volumes of all grains, compared with what the file says. An element is one of its first grain.
+pub(super) fn check_volumes(file: &VolumeFile, found: &mut Found) -> Vec<(u32, f64)> {
     let mut volumes: BTreeMap<u32, f64> = BTreeMap::new();
-    for (element, grain) in mesh.grains.iter().enumerate() {
-        *volumes.entry(grain.0).or_default() += volume(mesh.corners(element));
+    for (corners, grains) in file.elements().zip(&file.grains) {
+        if let Some(grain) = grains.first() {
+            *volumes.entry(grain.0).or_default() += shape_and_volume(&file.places(corners)).1;
+        }
     }
     let stated = file.volumes.iter().filter(|stated| stated.len() == volumes.len()).flatten();
     // With straight edges alone: what bends adds to volumes.
-    for ((grain, volume), stated) in volumes.iter().zip(stated).filter(|_| file.middles.is_empty()) {
+    for ((grain, volume), stated) in volumes.iter().zip(stated).filter(|_| !file.is_quadratic()) {
         if (volume / stated - 1.0).abs() > VOLUME_TOLERANCE {
             let message = format!("grain {grain} has the volume {volume}, and should have {stated}");
             found.push("wrong volume", message, None).grains = vec![*grain];

@@ -6,9 +6,10 @@ use glam::DVec3;
 use toml::Table;
 
 use super::Found;
-use super::conforming::{Faces, sorted};
+use super::conforming::Faces;
 use crate::VolumeFile;
 use crate::names::AXES;
+use crate::volume_mesh::element_shape::{corners_of_key, face_key};
 
 pub(super) fn check(file: &VolumeFile, faces: &Faces, settings: Option<&Table>, found: &mut Found) {
     let sides = Sides::new(file);
@@ -25,7 +26,7 @@ impl Sides {
         let ends = file.bounds();
         let side =
             |axis: usize, end: usize| (format!("{}{end}", AXES[axis].to_uppercase()), axis, ends[end][axis]);
-        Self((0..3).flat_map(|axis| [side(axis, 0), side(axis, 1)]).collect())
+        Self((0..file.shape.axes()).flat_map(|axis| [side(axis, 0), side(axis, 1)]).collect())
     }
 
     /// Sets of nodes hold all nodes on their sides, edges and corners, and no others.
@@ -67,11 +68,12 @@ impl Sides {
     fn check_faces(&self, file: &VolumeFile, faces: &Faces, found: &mut Found) {
         for (name, axis, coordinate) in &self.0 {
             let Some(set) = file.surfaces.get(name) else { continue };
-            let is_there =
-                |corners: &[u32; 3]| corners.iter().all(|corner| file.place(*corner)[*axis] == *coordinate);
+            let is_at = |corner: &u32| file.place(*corner)[*axis] == *coordinate;
+            let is_there = |face: &[u32; 3]| corners_of_key(face).iter().all(is_at);
             let expected: BTreeSet<[u32; 3]> = faces.outer().filter(is_there).collect();
-            let set: BTreeSet<[u32; 3]> = set.iter().copied().map(sorted).collect();
-            report(file, "face", name, (&expected, &set), found);
+            let set: BTreeSet<[u32; 3]> = set.iter().copied().collect();
+            let [_, _, what] = file.shape.words();
+            report(file, what, name, (&expected, &set), found);
         }
     }
 }
@@ -120,6 +122,7 @@ fn check_boundaries(file: &VolumeFile, faces: &Faces, found: &mut Found) {
         return;
     }
     let mut sets: BTreeMap<[u32; 3], &str> = BTreeMap::new();
+    let [one, _, face] = file.shape.words();
     // A boundary at a side of the box may be in the set of that side instead.
     let is_boundary = |name: &str| name.starts_with("BOUNDARY_");
     for (name, set) in file.surfaces.iter().filter(|(name, _)| is_boundary(name)) {
@@ -129,9 +132,13 @@ fn check_boundaries(file: &VolumeFile, faces: &Faces, found: &mut Found) {
             let mut grains: Vec<_> = at.iter().map(|element| &file.grains[*element as usize]).collect();
             grains.sort_unstable();
             sides.insert(grains);
-            if at.is_empty() || sets.insert(sorted(*corners), name).is_some() {
-                let why = if at.is_empty() { "is no face of a tetrahedron" } else { "is in another set too" };
-                let message = format!("a face of the set {name}, at node {}, {why}", file.node(corners[0]));
+            if at.is_empty() || sets.insert(*corners, name).is_some() {
+                let why = match at {
+                    [] => format!("is no {face} of a {one}"),
+                    _ => "is in another set too".to_owned(),
+                };
+                let node = file.node(corners[0]);
+                let message = format!("one {face} of the set {name}, at node {node}, {why}");
                 found.push("incomplete set", message, Some(file.place(corners[0])));
             }
         }
@@ -143,19 +150,19 @@ fn check_boundaries(file: &VolumeFile, faces: &Faces, found: &mut Found) {
         .surfaces
         .iter()
         .filter(|(name, _)| !is_boundary(name))
-        .flat_map(|(_, set)| set.iter().copied().map(sorted))
+        .flat_map(|(_, set)| set.iter().copied())
         .collect();
     let is_listed = |corners: &[u32; 3]| sets.contains_key(corners) || of_sides.contains(corners);
     // Where cohesive elements stand between grains, only the face of the first side is in a set.
     let second_sides: BTreeSet<[u32; 3]> =
-        file.prisms.iter().map(|&[.., d, e, f]| sorted([d, e, f])).collect();
+        file.joints.iter().map(|joint| face_key(&joint[joint.len() / 2..])).collect();
     let outer = faces.outer().filter(|corners| !second_sides.contains(corners));
     let missing: Vec<[u32; 3]> =
         faces.between_grains(file).chain(outer).filter(|corners| !is_listed(corners)).collect();
     if let Some(first) = missing.first() {
         let node = file.node(first[0]);
         let message = format!(
-            "{} faces between grains or at the exterior are in no set, such as that at node {node}",
+            "{} {face}s between grains or at the exterior are in no set, such as that at node {node}",
             missing.len()
         );
         found.push("incomplete set", message, Some(file.place(first[0])));

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::Found;
 use super::conforming::Faces;
 use crate::VolumeFile;
+use crate::volume_mesh::element_shape::corners_of_key;
 
 /// How far a copy may be from where whole periods lead, as a share of the mesh's size: numbers in .inp have as few as fourteen digits.
 const OFF_PERIOD: f64 = 1e-12;
@@ -42,7 +43,7 @@ pub(super) fn check(file: &VolumeFile, faces: &Faces, found: &mut Found) {
         neighbours[original as usize].push((copy, whole));
         neighbours[copy as usize].push((original, whole.map(i64::wrapping_neg)));
     }
-    if file.prisms.is_empty() {
+    if file.joints.is_empty() {
         check_faces(file, faces, periods, &moved(&neighbours), found);
     }
 }
@@ -69,17 +70,19 @@ fn moved(neighbours: &[Vec<Moved>]) -> Vec<Moved> {
 
 /// Every outer face is at a wall, or comes a second time whole periods away.
 fn check_faces(file: &VolumeFile, faces: &Faces, periods: DVec3, moved: &[Moved], found: &mut Found) {
-    let mut counts: BTreeMap<[Moved; 3], Vec<[u32; 3]>> = BTreeMap::new();
-    for corners in faces.outer() {
-        let mut key = corners.map(|corner| moved[corner as usize]);
+    let mut counts: BTreeMap<Vec<Moved>, Vec<[u32; 3]>> = BTreeMap::new();
+    for face in faces.outer() {
+        let mut key: Vec<Moved> =
+            corners_of_key(&face).iter().map(|corner| moved[*corner as usize]).collect();
         key.sort_unstable();
         let (_, from) = key[0];
-        let seen = key.map(|(node, at)| (node, [0, 1, 2].map(|axis| at[axis] - from[axis])));
-        counts.entry(seen).or_default().push(corners);
+        let seen = key.into_iter().map(|(node, at)| (node, [0, 1, 2].map(|axis| at[axis] - from[axis])));
+        counts.entry(seen.collect()).or_default().push(face);
     }
     let ends = file.bounds();
-    let is_at_wall = |corners: &[u32; 3]| {
-        (0..3).filter(|axis| periods[*axis] == 0.0).any(|axis| {
+    let is_at_wall = |face: &[u32; 3]| {
+        let corners = corners_of_key(face);
+        (0..file.shape.axes()).filter(|axis| periods[*axis] == 0.0).any(|axis| {
             ends.iter().any(|end| corners.iter().all(|corner| file.place(*corner)[axis] == end[axis]))
         })
     };
@@ -91,7 +94,9 @@ fn check_faces(file: &VolumeFile, faces: &Faces, periods: DVec3, moved: &[Moved]
         .collect();
     if let Some(first) = lone.first() {
         let node = file.node(first[0]);
-        let message = format!("{} outer faces are tied to no other, such as that at node {node}", lone.len());
+        let [_, _, face] = file.shape.words();
+        let message =
+            format!("{} outer {face}s are tied to no other, such as that at node {node}", lone.len());
         found.push("wrong tie", message, Some(file.place(first[0])));
     }
 }

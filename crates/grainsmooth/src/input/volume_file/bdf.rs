@@ -1,4 +1,4 @@
-//! Bulk data of Nastran: GRID and CTETRA in small, wide and free fields.
+//! Bulk data of Nastran: GRID, CTETRA, CTRIA3 and CTRIA6 in small, wide and free fields.
 //!
 //! MSC Nastran Quick Reference Guide, "Bulk data entries".
 
@@ -8,6 +8,7 @@ use polycrystal::GrainId;
 use super::VolumeFile;
 use super::numbered::{Places, number, wrong_node_count};
 use crate::mesh::file::MeshFileProblem;
+use crate::volume_mesh::element_shape::ElementShape;
 
 /// An entry: the line that it begins in, counted from 0, and its fields from the name on.
 type Entry = (usize, Vec<String>);
@@ -64,21 +65,23 @@ pub(super) fn read(text: &str) -> Result<VolumeFile, MeshFileProblem> {
         file.node_numbers.push(node);
         file.points.push(DVec3::new(number(*line, x)?, number(*line, y)?, number(*line, z)?));
     }
-    for (line, fields) in named("CTETRA") {
-        let [_, element, property, corners @ ..] = &fields[..] else {
-            return Err(MeshFileProblem::line(*line, "a CTETRA has a number, a property and nodes"));
+    // Beside tetrahedra, triangles are shells on their faces.
+    let is_solid = named("CTETRA").next().is_some();
+    file.shape = if is_solid { ElementShape::Tetrahedron } else { ElementShape::Triangle };
+    let (kinds, count): (&[&str], usize) =
+        if is_solid { (&["CTETRA"], 10) } else { (&["CTRIA3", "CTRIA6"], 6) };
+    for (line, fields) in kinds.iter().flat_map(|kind| named(kind)) {
+        let [kind, element, property, of_element @ ..] = &fields[..] else {
+            return Err(MeshFileProblem::line(*line, "an element has a number, a property and nodes"));
         };
-        let corners = corners.iter().filter(|field| !field.is_empty() && !field.starts_with('+'));
-        let corners: Vec<u32> = corners.map(|field| nodes.of(*line, field)).collect::<Result<_, _>>()?;
-        match (corners.first_chunk::<4>(), corners.len()) {
-            (Some(ends), 4) => file.tetrahedra.push(*ends),
-            (Some(ends), 10) => {
-                file.tetrahedra.push(*ends);
-                file.middles.extend(corners.last_chunk::<6>());
-            }
-            (_, count) => return Err(wrong_node_count(*line, count, 4)),
-        }
-        file.element_numbers.push(number(*line, element)?);
+        // Behind the nodes of triangles stand an angle and thicknesses.
+        let count = if kind.starts_with("CTRIA3") { 3 } else { count };
+        let of_element =
+            of_element.iter().take(count).filter(|field| !field.is_empty() && !field.starts_with('+'));
+        let of_element: Vec<u32> =
+            of_element.map(|field| nodes.of(*line, field)).collect::<Result<_, _>>()?;
+        file.push_element(number(*line, element)?, &of_element)
+            .map_err(|wanted| wrong_node_count(*line, of_element.len(), wanted))?;
         let property: u32 = number(*line, property)?;
         file.grains.push(property.checked_sub(1).map(GrainId).into_iter().collect());
     }

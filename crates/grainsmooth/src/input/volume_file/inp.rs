@@ -10,7 +10,7 @@ use polycrystal::GrainId;
 use super::numbered::{Places, number, wrong_node_count};
 use super::{Tie, VolumeFile};
 use crate::mesh::file::MeshFileProblem;
-use crate::volume_mesh::element_shape::FACES;
+use crate::volume_mesh::element_shape::{ElementShape, face_key};
 
 /// Prefix of the element sets of grains, and of the node sets of the axes of a periodic box.
 const GRAIN: &str = "GRAIN_";
@@ -44,6 +44,19 @@ fn cards(text: &str) -> Vec<Card<'_>> {
     cards
 }
 
+/// The shape of elements of a type, the number of their nodes, and whether they are cohesive elements between such.
+fn element_type(name: &str) -> Option<(ElementShape, usize, bool)> {
+    match name {
+        "C3D4" => Some((ElementShape::Tetrahedron, 4, false)),
+        "C3D10" => Some((ElementShape::Tetrahedron, 10, false)),
+        "COH3D6" => Some((ElementShape::Tetrahedron, 6, true)),
+        "CPS3" | "CPE3" => Some((ElementShape::Triangle, 3, false)),
+        "CPS6" | "CPE6" => Some((ElementShape::Triangle, 6, false)),
+        "COH2D4" => Some((ElementShape::Triangle, 4, true)),
+        _ => None,
+    }
+}
+
 /// The words of a data line; a comma at its end means nothing.
 fn words(content: &str) -> impl Iterator<Item = &str> {
     content.trim().trim_end_matches(',').split(',').map(str::trim)
@@ -54,12 +67,16 @@ pub(super) fn read(text: &str) -> Result<VolumeFile, MeshFileProblem> {
     let mut file = VolumeFile::default();
     let mut nodes = Places::new("node");
     let mut elements = Places::new("element");
-    let mut prism_numbers = Vec::new();
     for card in cards.iter().filter(|card| card.keyword == "NODE") {
         for (line, content) in &card.data {
             let words: Vec<&str> = words(content).collect();
-            let [node, x, y, z] = words[..] else {
-                return Err(MeshFileProblem::line(*line, "a node is its number and three coordinates"));
+            let (node, x, y, z) = match words[..] {
+                [node, x, y] => (node, x, y, "0"),
+                [node, x, y, z] => (node, x, y, z),
+                _ => {
+                    let what = "a node is its number and two or three coordinates";
+                    return Err(MeshFileProblem::line(*line, what));
+                }
             };
             let node = number(*line, node)?;
             nodes.push(*line, node)?;
@@ -67,46 +84,39 @@ pub(super) fn read(text: &str) -> Result<VolumeFile, MeshFileProblem> {
             file.points.push(DVec3::new(number(*line, x)?, number(*line, y)?, number(*line, z)?));
         }
     }
-    for card in cards.iter().filter(|card| card.keyword == "ELEMENT") {
-        let kind = card.parameters.get("TYPE").map_or("", String::as_str);
+    let of_elements = || cards.iter().filter(|card| card.keyword == "ELEMENT");
+    let name_of = |card: &Card<'_>| card.parameters.get("TYPE").cloned().unwrap_or_default();
+    let mut types = of_elements().filter_map(|card| element_type(&name_of(card)));
+    file.shape = types.next().map_or(file.shape, |(shape, ..)| shape);
+    for card in of_elements() {
+        let name = name_of(card);
+        let of_shape = element_type(&name).filter(|(shape, ..)| *shape == file.shape);
+        let Some((_, wanted, is_cohesive)) = of_shape else {
+            let line = card.data.first().map_or(0, |(line, _)| *line);
+            let what = format!(
+                "elements of the type {name} are not checked; give C3D4, C3D10 and COH3D6, or in the plane CPS3, CPE3, CPS6, CPE6 and COH2D4"
+            );
+            return Err(MeshFileProblem::line(line, what));
+        };
         for (line, content) in &card.data {
             let all: Vec<&str> = words(content).collect();
             let Some((element, corners)) = all.split_first() else { continue };
             let corners: Vec<u32> =
                 corners.iter().map(|word| nodes.of(*line, word)).collect::<Result<_, _>>()?;
             let wrong = |wanted| wrong_node_count(*line, corners.len(), wanted);
-            match kind {
-                "C3D4" | "C3D10" => {
-                    let element = number(*line, element)?;
-                    elements.push(*line, element)?;
-                    file.element_numbers.push(element);
-                    if kind == "C3D4" {
-                        file.tetrahedra.push(corners[..].try_into().map_err(|_| wrong(4))?);
-                    } else {
-                        let (Some(ends), Some(middles)) = (corners.first_chunk(), corners.last_chunk())
-                        else {
-                            return Err(wrong(10));
-                        };
-                        if corners.len() != 10 {
-                            return Err(wrong(10));
-                        }
-                        file.tetrahedra.push(*ends);
-                        file.middles.push(*middles);
-                    }
-                }
-                "COH3D6" => {
-                    prism_numbers.push(number::<u64>(*line, element)?);
-                    file.prisms.push(corners[..].try_into().map_err(|_| wrong(6))?);
-                }
-                _ => {
-                    let what =
-                        format!("elements of the type {kind} are not checked; give C3D4, C3D10 or COH3D6");
-                    return Err(MeshFileProblem::line(*line, what));
-                }
+            if corners.len() != wanted {
+                return Err(wrong(wanted));
             }
+            let element = number(*line, element)?;
+            if is_cohesive {
+                file.joints.push(corners);
+                continue;
+            }
+            elements.push(*line, element)?;
+            file.push_element(element, &corners).map_err(wrong)?;
         }
     }
-    file.grains = vec![Vec::new(); file.tetrahedra.len()];
+    file.grains = vec![Vec::new(); file.element_numbers.len()];
     read_sets(&cards, &nodes, &elements, &mut file)?;
     for card in cards.iter().filter(|card| card.keyword == "EQUATION") {
         file.ties = ties(card, &nodes, &file)?;
@@ -161,20 +171,25 @@ fn read_sets(
                 }
             }
             "SURFACE" => {
-                let set = file.surfaces.entry(name("NAME")).or_default();
+                let mut set = Vec::new();
                 for (line, content) in &card.data {
                     let words: Vec<&str> = words(content).collect();
                     let [element, face] = words[..] else {
-                        return Err(MeshFileProblem::line(*line, "a face is an element and S1 to S4"));
+                        return Err(MeshFileProblem::line(
+                            *line,
+                            "a face is an element and S1, S2 or another",
+                        ));
                     };
-                    let corners = file.tetrahedra[elements.of(*line, element)? as usize];
+                    let corners = file.element(elements.of(*line, element)? as usize);
                     let face: usize = number(*line, face.trim_start_matches(['S', 's']))?;
-                    let of_face = face.checked_sub(1).and_then(|face| FACES.get(face));
+                    let [shape, _, _] = file.shape.words();
+                    let of_face = face.checked_sub(1).and_then(|face| file.faces(corners).nth(face));
                     let of_face = of_face.ok_or_else(|| {
-                        MeshFileProblem::line(*line, format!("a tetrahedron has no face S{face}"))
+                        MeshFileProblem::line(*line, format!("a {shape} has no face S{face}"))
                     })?;
-                    set.push(of_face.map(|corner| corners[corner]));
+                    set.push(face_key(&of_face));
                 }
+                file.surfaces.entry(name("NAME")).or_default().extend(set);
             }
             _ => {}
         }
@@ -182,7 +197,7 @@ fn read_sets(
     Ok(())
 }
 
-/// The nodes that equations tie to others: u - u' - sum s_a u_a = 0 in each of the three directions.
+/// The nodes that equations tie to others: u - u' - sum s_a u_a = 0 in each direction.
 fn ties(card: &Card<'_>, nodes: &Places, file: &VolumeFile) -> Result<Vec<Tie>, MeshFileProblem> {
     let axis_of: BTreeMap<u32, usize> =
         (0..3).filter_map(|axis| Some((*file.node_sets.get(PERIOD[axis])?.first()?, axis))).collect();
@@ -230,11 +245,12 @@ fn ties(card: &Card<'_>, nodes: &Places, file: &VolumeFile) -> Result<Vec<Tie>, 
             ties.push(tie);
         }
     }
+    let directions = u64::try_from(file.shape.axes()).unwrap_or(u64::MAX);
     for tie in &ties {
-        if (2..=3).any(|direction| components.get(&(tie.copy, direction)) != Some(tie)) {
+        if (2..=directions).any(|direction| components.get(&(tie.copy, direction)) != Some(tie)) {
             let (line, _) = card.data[0];
             let node = file.node_numbers[tie.copy as usize];
-            let what = format!("equations do not tie node {node} in the same way in all three directions");
+            let what = format!("equations do not tie node {node} in the same way in all directions");
             return Err(MeshFileProblem::line(line, what));
         }
     }

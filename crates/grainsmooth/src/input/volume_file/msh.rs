@@ -10,6 +10,7 @@ use polycrystal::GrainId;
 use super::numbered::{Places, number, wrong_node_count};
 use super::{Tie, VolumeFile};
 use crate::mesh::file::MeshFileProblem;
+use crate::volume_mesh::element_shape::{ElementShape, face_key};
 
 /// Lines of a section, with their numbers in the file.
 struct Section<'a> {
@@ -53,7 +54,9 @@ pub(super) fn read(text: &str) -> Result<VolumeFile, MeshFileProblem> {
     }
     let names = physical_names(text)?;
     let groups = groups(text)?;
-    let mut file = VolumeFile::default();
+    let is_solid = groups.keys().any(|(dimension, _)| *dimension == 3);
+    let shape = if is_solid { ElementShape::Tetrahedron } else { ElementShape::Triangle };
+    let mut file = VolumeFile { shape, ..VolumeFile::default() };
     let nodes = read_nodes(text, &mut file)?;
     read_elements(text, &nodes, &groups, &names, &mut file)?;
     read_periodic(text, &nodes, &mut file)?;
@@ -138,31 +141,36 @@ fn read_elements(
             let Some((element, corners)) = words.split_first() else { continue };
             let corners: Vec<u32> =
                 corners.iter().map(|word| nodes.of(line, word)).collect::<Result<_, _>>()?;
-            let wanted = match kind {
-                2 => 3,
-                4 => 4,
-                9 => 6,
-                11 => 10,
+            let (shape_axes, wanted) = match kind {
+                1 => (1, 2),
+                2 => (2, 3),
+                4 => (3, 4),
+                8 => (1, 3),
+                9 => (2, 6),
+                11 => (3, 10),
                 _ => continue,
             };
+            let wrong = |wanted| wrong_node_count(line, corners.len(), wanted);
             if corners.len() != wanted {
-                return Err(wrong_node_count(line, corners.len(), wanted));
+                return Err(wrong(wanted));
             }
-            if let (2 | 9, Some(ends)) = (kind, corners.first_chunk::<3>()) {
+            let axes = file.shape.axes();
+            if shape_axes + 1 == axes {
                 for name in &of_entity {
-                    file.surfaces.entry(inp_name(name)).or_default().push(*ends);
+                    let faces = file.surfaces.entry(inp_name(name)).or_default();
+                    faces.push(face_key(&corners[..axes]));
                 }
-            } else if let Some(ends) = corners.first_chunk::<4>() {
-                file.tetrahedra.push(*ends);
-                file.element_numbers.push(number(line, element)?);
-                let grains = of_entity.iter().filter_map(|name| name.strip_prefix("grain"));
-                file.grains.push(grains.filter_map(|grain| Some(GrainId(grain.parse().ok()?))).collect());
-                if let Some(middles) = corners.get(4..).and_then(|middles| <[u32; 6]>::try_from(middles).ok())
+            } else if shape_axes == axes {
+                let mut nodes = corners.clone();
+                if let [.., fifth, sixth] = &mut nodes[..]
+                    && kind == 11
                 {
                     // Gmsh has the last two edges in the other order.
-                    let [a, b, c, d, e, f] = middles;
-                    file.middles.push([a, b, c, d, f, e]);
+                    std::mem::swap(fifth, sixth);
                 }
+                file.push_element(number(line, element)?, &nodes).map_err(wrong)?;
+                let grains = of_entity.iter().filter_map(|name| name.strip_prefix("grain"));
+                file.grains.push(grains.filter_map(|grain| Some(GrainId(grain.parse().ok()?))).collect());
             }
         }
     }

@@ -1,4 +1,4 @@
-//! VTK's UnstructuredGrid with tetrahedra.
+//! VTK's UnstructuredGrid with tetrahedra, or with triangles.
 
 use glam::DVec3;
 use polycrystal::GrainId;
@@ -8,22 +8,38 @@ use super::{Tie, VolumeFile};
 use crate::Names;
 use crate::mesh::file::MeshFileProblem;
 use crate::names::VOLUMES;
+use crate::volume_mesh::element_shape::ElementShape;
 use crate::vtk::{Element, XmlFile};
 use clap::ValueEnum;
 
-/// VTK's numbers for tetrahedra of first and second order.
-const LINEAR: i64 = CellType::Tetra as i64;
-const QUADRATIC: i64 = CellType::QuadraticTetra as i64;
+/// VTK's numbers for elements of first and second order.
+fn shape_of(kind: i64) -> Option<ElementShape> {
+    const TRIANGLES: [CellType; 2] = [CellType::Triangle, CellType::QuadraticTriangle];
+    const TETRAHEDRA: [CellType; 2] = [CellType::Tetra, CellType::QuadraticTetra];
+    let is_of = |types: [CellType; 2]| types.into_iter().any(|of| of as i64 == kind);
+    let shapes = [(TRIANGLES, ElementShape::Triangle), (TETRAHEDRA, ElementShape::Tetrahedron)];
+    shapes.into_iter().find(|(types, _)| is_of(*types)).map(|(_, shape)| shape)
+}
 
 fn corrupt(what: impl ToString) -> MeshFileProblem {
     MeshFileProblem::corrupt("VTK", what)
 }
 
-/// Whether the first cell is a tetrahedron.
-pub(super) fn has_tetrahedra(bytes: &[u8]) -> bool {
+/// Whether the first cell is a tetrahedron, or a triangle of a grain: those of a network have two.
+pub(super) fn has_elements(bytes: &[u8]) -> bool {
     let Some(file) = XmlFile::of(bytes) else { return false };
     let types = named(&file, "Cells", "types").and_then(|array| whole_numbers(&file, array));
-    types.is_some_and(|types| matches!(types.first(), Some(&(LINEAR | QUADRATIC))))
+    match types.and_then(|types| shape_of(*types.first()?)) {
+        None => false,
+        Some(ElementShape::Triangle) => grains(&file).is_some(),
+        Some(ElementShape::Tetrahedron) => true,
+    }
+}
+
+/// The array of the grain of each cell.
+fn grains<'a, 'b>(file: &'b XmlFile<'a>) -> Option<&'b Element<'a>> {
+    let grain_names = Names::value_variants().iter().map(|names| names.grain());
+    grain_names.filter_map(|name| named(file, "CellData", name)).next()
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<VolumeFile, MeshFileProblem> {
@@ -42,10 +58,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<VolumeFile, MeshFileProblem> {
         ..VolumeFile::default()
     };
     let (connectivity, types) = (cells("connectivity")?, cells("types")?);
-    let grain_names = Names::value_variants().iter().map(|names| names.grain());
-    let grains = grain_names.filter_map(|name| named(&xml, "CellData", name)).next();
-    let grains = grains.and_then(|array| whole_numbers(&xml, array));
+    let grains = grains(&xml).and_then(|array| whole_numbers(&xml, array));
     let grains = grains.ok_or_else(|| corrupt("no array tells the grain of each cell, such as GrainId"))?;
+    file.shape = types.first().and_then(|kind| shape_of(*kind)).unwrap_or_default();
     let mut start = 0;
     for (cell, ((kind, end), grain)) in types.iter().zip(cells("offsets")?).zip(grains).enumerate() {
         let end = usize::try_from(end).unwrap_or(usize::MAX);
@@ -55,19 +70,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<VolumeFile, MeshFileProblem> {
             place.ok_or_else(|| corrupt(format!("cell {cell} has the node {node}, and there is none")))
         };
         let nodes: Vec<u32> = nodes.iter().map(node).collect::<Result<_, _>>()?;
-        match (*kind, nodes.first_chunk::<4>(), nodes.len()) {
-            (LINEAR, Some(ends), 4) => file.tetrahedra.push(*ends),
-            (QUADRATIC, Some(ends), 10) => {
-                file.tetrahedra.push(*ends);
-                file.middles.extend(nodes.last_chunk::<6>());
-            }
-            _ => return Err(corrupt(format!("cell {cell} is no tetrahedron"))),
+        let [one, _, _] = file.shape.words();
+        if shape_of(*kind) != Some(file.shape) {
+            return Err(corrupt(format!("cell {cell} is no {one}")));
         }
-        file.element_numbers.push(cell as u64);
+        file.push_element(cell as u64, &nodes).map_err(|wanted| {
+            corrupt(format!("cell {cell} has {} nodes in place of {wanted}", nodes.len()))
+        })?;
         file.grains.push(u32::try_from(grain).map(GrainId).into_iter().collect());
         start = end;
     }
-    if file.tetrahedra.len() != types.len() || start != connectivity.len() {
+    if file.element_numbers.len() != types.len() || start != connectivity.len() {
         return Err(corrupt("the arrays of the cells are not as long as they should be"));
     }
     let originals = named(&xml, "PointData", "PeriodicOriginal");
