@@ -16,10 +16,10 @@ use crate::CellComplex;
 use crate::energy::local_size::LocalSize;
 use crate::events::reconnection::Reconnections;
 use crate::flow::balance::Balance;
-use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
+use crate::flow::recipe::{Certified, NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Moving, RelaxationStep, Relaxed};
 use crate::flow::tuning::Tuning;
-use crate::{Mesh, Network, NetworkError, Side, measure_network};
+use crate::{Mesh, Network, NetworkError, Side, Volumes, measure_network};
 use arc_network::ArcNetwork;
 use chordal_arc::point_on_arc;
 use descent::Descent;
@@ -52,8 +52,8 @@ pub(crate) fn equilibrate(
     let smooth = SmoothEdges::new(&edges, recipe, &areas)?;
     let relaxed = smooth.balanced(&edges, recipe, states, descent, watch)?;
     let network = smooth.network;
-    let points = relaxed.points.clone();
-    let cells = RelaxedCells::validated(network, relaxed, points)?;
+    let certified = Certified::new(&network, &relaxed, Volumes::Kept)?;
+    let cells = RelaxedCells::of_kept_topology(network, relaxed, certified);
     let balance = Some(balance(&cells.network, &cells.points));
     Ok(RelaxedCells { reconnections, balance, ..cells })
 }
@@ -182,7 +182,7 @@ impl SmoothEdges {
             show(steps, &descent.state);
         }
         let points = self.points(&network, &descent.state);
-        Ok(Relaxed { level, points, steps, time: steps as f64, given_up: Vec::new(), is_flat: false })
+        Ok(Relaxed { steps, time: steps as f64, ..Relaxed::new(level, points) })
     }
 
     fn points(&self, network: &ArcNetwork<'_>, state: &[f64]) -> Vec<DVec3> {

@@ -49,7 +49,7 @@ pub use complex::{
 pub use energy::volumes_kept::Volumes;
 pub use events::reconnection::Reconnections;
 pub use flow::balance::Balance;
-pub use flow::recipe::{NetworkRecipe, RelaxedCells};
+pub use flow::recipe::{Certified, NetworkRecipe, RelaxedCells};
 pub use flow::relaxation::{Moving, Relaxation, RelaxationStep, Relaxed};
 #[doc(hidden)]
 pub use flow::tuning::Tuning;
@@ -88,7 +88,7 @@ pub use relax::regular_cells::regular_cells_tuned;
 pub use relax::regular_cells::{RegularCells, regular_cells};
 #[doc(hidden)]
 pub use relax::relax_tuned;
-pub use relax::{relax, relax_watched};
+pub use relax::{relax, relax_certified, relax_watched};
 #[doc(hidden)]
 pub use remesh::RemeshTuning;
 pub use remesh::{EdgeMiddles, ElementSize, PlaneMesh, Remeshed};

@@ -14,6 +14,7 @@ pub(crate) mod regular_cells;
 use glam::DVec3;
 
 use crate::flow::boundary_flow::{End, Flow, Grown, Stage, has_kept_volumes};
+use crate::flow::recipe::Certified;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
 
@@ -92,9 +93,32 @@ pub fn relax_tuned(
     tuning: &Tuning,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
+    let plan = plan_of(network, relaxation, volumes, tuning);
+    relax_levels(network, control_points, &plan, &mut watch, |_| Ok(())).map(|(relaxed, ())| relaxed)
+}
+
+/// As [`relax_watched`], and the finest level certified. Where it is not valid, as triangles cross, coarser points have to do.
+///
+/// # Errors
+/// As of [`relax`], and [`NetworkError::Invalid`].
+pub fn relax_certified(
+    network: &Network,
+    control_points: &[DVec3],
+    relaxation: &Relaxation,
+    volumes: Volumes,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<(Relaxed, Certified), NetworkError> {
+    let tuning = Tuning::default();
+    let plan = plan_of(network, relaxation, volumes, &tuning);
+    relax_levels(network, control_points, &plan, &mut watch, |relaxed| {
+        Certified::new(network, relaxed, volumes)
+    })
+}
+
+/// The plan for a flat start, with tensions in any unit.
+fn plan_of<'a>(network: &Network, relaxation: &Relaxation, volumes: Volumes, tuning: &'a Tuning) -> Plan<'a> {
     let tension_unit = network.mean_tension();
-    let plan = Plan { relaxation: *relaxation, start: Start::Flat, volumes, tuning, tension_unit };
-    relax_levels(network, control_points, &plan, &mut watch)
+    Plan { relaxation: *relaxation, start: Start::Flat, volumes, tuning, tension_unit }
 }
 
 /// How to relax a network.
@@ -107,13 +131,16 @@ struct Plan<'a> {
     tension_unit: f64,
 }
 
-/// As [`relax_tuned`], by a plan.
-fn relax_levels(
+/// As [`relax_tuned`], by a plan, and what `accept` makes of the result.
+///
+/// Where the points of a level tangle, or what they lead to is not accepted, those of the level before have to do, and the result tells why.
+fn relax_levels<T>(
     network: &Network,
     control_points: &[DVec3],
     plan: &Plan<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Relaxed, NetworkError> {
+    accept: impl Fn(&Relaxed) -> Result<T, NetworkError>,
+) -> Result<(Relaxed, T), NetworkError> {
     let Plan { relaxation, start, volumes, tuning, tension_unit } = *plan;
     let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
     let flow = |level: usize| {
@@ -124,14 +151,15 @@ fn relax_levels(
             _ => flow,
         }
     };
+    let accepted = |relaxed: Relaxed| accept(&relaxed).map(|made| (relaxed, made));
     relaxation.check()?;
     let (time, finest) = match relaxation {
         Relaxation::Time(time) => (time, tuning.finest_moved),
         Relaxation::Equilibrium => (TIME_OF_KEPT_TOPOLOGY, tuning.finest_balanced),
     };
     let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
-    let mut points = control_points.to_vec();
     if time == 0.0 || !has_tension {
+        let mut points = control_points.to_vec();
         // Cells that were regularised have lost the volumes that their grains are to have.
         let is_lost =
             || !has_kept_volumes(network, &network.subdivide_between(0, network.level_count(), &points));
@@ -139,7 +167,7 @@ fn relax_levels(
             flow(0).restore_volumes(&mut points)?;
         }
         let is_flat = points == control_points;
-        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: Vec::new(), is_flat });
+        return accepted(Relaxed { is_flat, ..Relaxed::new(0, points) });
     }
     let last = network.level_count().min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
@@ -159,25 +187,26 @@ fn relax_levels(
         show(Grown { steps: 0, left: 1, passed: 0.0, points: &begin });
         // Grains grow for the time that was asked for, not once more on each level.
         let points = flow(last).grow(&begin, whole_time, &mut show)?;
-        return Ok(Relaxed { level: last, points, steps, time, given_up: Vec::new(), is_flat: false });
+        return accepted(Relaxed { steps, time, ..Relaxed::new(last, points) });
     }
     let (first, first_steps) = match (start, relaxation) {
         (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.fine_steps),
         _ => (0, tuning.coarse_steps),
     };
-    let steps = first_steps + (last - first) * tuning.fine_steps;
+    let count = first_steps + (last - first) * tuning.fine_steps;
     watch(RelaxationStep {
         done: 0,
-        count: steps,
+        count,
         time: 0.0,
         now: Moving::Points { level: 0, points: control_points },
     });
-    let mut done_before = 0;
-    let mut passed = 0.0;
-    // The level that the points are of, and whether they are good enough as they are.
-    let (mut at, mut is_good) = (0, start == Start::Relaxed);
-    for level in first..=last {
-        let count = if level == first { first_steps } else { tuning.fine_steps };
+    // What will do where finer points tangle, the coarser ones first. A start whose own level moves will not: it is not relaxed.
+    let mut good = vec![Relaxed::new(0, control_points.to_vec())];
+    let unmoved = usize::from(first == 0);
+    let mut level = first;
+    let mut result = loop {
+        let before = good.last().expect("there is a start");
+        let steps = if level == first { first_steps } else { tuning.fine_steps };
         let end = if level == last { End::Finished } else { End::Open };
         let stage = match relaxation {
             Relaxation::Equilibrium if level == last => {
@@ -185,48 +214,42 @@ fn relax_levels(
                 let step_time = share * whole_time;
                 Stage { step_time, steps: REST_STEPS, least_gain: Relaxation::LEAST_GAIN, end }
             }
-            _ => Stage { step_time: whole_time / count as f64, steps: count, least_gain: 0.0, end },
+            _ => Stage { step_time: whole_time / steps as f64, steps, least_gain: 0.0, end },
         };
-        let begin = network.subdivide_between(at, level, &points);
-        let before = passed;
+        let mut passed = before.time;
         let mut show = |done: usize, points: &[DVec3]| {
-            let time = before + done as f64 * time * (stage.step_time / whole_time);
-            passed = time;
-            watch(RelaxationStep {
-                done: done_before + done,
-                count: steps,
-                time,
-                now: Moving::Points { level, points },
-            });
+            passed = before.time + done as f64 * time * (stage.step_time / whole_time);
+            let now = Moving::Points { level, points };
+            watch(RelaxationStep { done: before.steps + done, count, time: passed, now });
         };
-        let run = flow(level).run(&begin, &stage, &mut show);
-        done_before += count;
-        match run {
-            Ok(moved) => (points, at, is_good) = (moved, level, true),
-            Err(error) if level == at || !is_good || !error.is_tangle() => return Err(error),
-            Err(error) => {
-                // Finer points fold where coarser ones do not: these will have to do.
-                let end = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
-                let mut attempts = Vec::new();
-                error.give_up(format!("moving the points of level {level}"), &mut attempts);
-                let run = flow(at).run(&points, &end, &mut |_, _| ());
-                points = match run {
-                    Ok(points) => points,
-                    Err(error) => return Err(error.after(attempts)),
-                };
-                let steps = done_before - count;
-                return Ok(Relaxed {
-                    level: at,
-                    points,
-                    steps,
-                    time: before,
-                    given_up: attempts,
-                    is_flat: false,
-                });
+        let start = network.subdivide_between(before.level, level, &before.points);
+        let run = flow(level).run(&start, &stage, &mut show);
+        let relaxed = run.map(|points| Relaxed {
+            steps: before.steps + steps,
+            time: passed,
+            ..Relaxed::new(level, points)
+        });
+        match relaxed {
+            Ok(relaxed) if level < last => {
+                good.push(relaxed);
+                level += 1;
             }
+            end => break end.and_then(accepted),
         }
+    };
+    let mut given_up = Vec::new();
+    while let Err(error) = result {
+        let coarser = if error.is_tangle() && good.len() > unmoved { good.pop() } else { None };
+        let Some(mut relaxed) = coarser else { return Err(error.after(given_up)) };
+        error.give_up(format!("moving the points of level {level}"), &mut given_up);
+        level = relaxed.level;
+        let end = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
+        result = flow(level).run(&relaxed.points, &end, &mut |_, _| ()).and_then(|points| {
+            relaxed.points = points;
+            accepted(relaxed)
+        });
     }
-    Ok(Relaxed { level: last, points, steps, time: passed, given_up: Vec::new(), is_flat: false })
+    result.map(|(relaxed, made)| (Relaxed { given_up, ..relaxed }, made))
 }
 
 /// Where the points of a control mesh in space go in the usual time, as a forecast: volumes are right, triangles may be thin.
@@ -240,4 +263,45 @@ pub(crate) fn predicted_points(
     let stage = Stage { step_time, steps, least_gain: 0.0, end: End::Volumes };
     let mut flow = Flow::new(network, 0, Volumes::Kept, network.mean_tension(), *tuning);
     flow.run(control_points, &stage, &mut |_, _| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use voronoi::{Domain, Tessellation};
+
+    use super::*;
+    use crate::{Attempt, Fault, Faults, Junctions};
+
+    /// What crossed only in the end was once refused, though coarser points did not cross.
+    #[test]
+    fn points_whose_finest_level_crosses_give_way_to_those_of_the_level_before() {
+        let seeds: Vec<DVec3> =
+            (1..=12).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+        let cells = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&cells, Junctions::Crease, 2).expect("a small network");
+        let tuning = Tuning::default();
+        let relaxation = Relaxation::Time(0.1);
+        let plan = plan_of(&network, &relaxation, Volumes::Kept, &tuning);
+        let crossing = || NetworkError::Invalid(Faults(vec![Fault::NoArea { element: 7 }]));
+        let relaxed = |finest: usize| {
+            relax_levels(&network, &flat, &plan, &mut |_| (), |relaxed| {
+                if relaxed.level > finest { Err(crossing()) } else { Ok(relaxed.level) }
+            })
+        };
+        let (coarse, level) = relaxed(0).expect("the control points will do");
+        assert_eq!((coarse.level, level), (0, 0));
+        let [Attempt { tried, said }] = &coarse.given_up[..] else { panic!("{:?}", coarse.given_up) };
+        assert_eq!((tried.as_str(), said), ("moving the points of level 1", &crossing().to_string()));
+        // It is complete: volumes are right on the finest level.
+        assert!(has_kept_volumes(&network, &coarse.finest_points(&network)));
+        let (fine, _) = relaxed(1).expect("all points will do");
+        assert_eq!((fine.level, fine.given_up.len()), (1, 0));
+        assert!(coarse.time < fine.time && coarse.steps < fine.steps);
+        let is_moved = |coarse: &Relaxed| coarse.points.iter().zip(&flat).any(|(a, b)| a != b);
+        assert!(is_moved(&coarse));
+        // A flat start is not relaxed: where no level will do there is none.
+        let error = relax_levels(&network, &flat, &plan, &mut |_| (), |_| Err::<(), _>(crossing()));
+        let (attempts, last) = error.expect_err("nothing is accepted").into_attempts();
+        assert_eq!((attempts.len(), last.to_string()), (1, crossing().to_string()));
+    }
 }

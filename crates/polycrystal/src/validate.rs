@@ -30,17 +30,16 @@ use crate::{Certificate, Expected, Faults, GrainId, Network, Surface, dihedral_a
 /// # Panics
 /// When there is not one point per vertex.
 pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faults> {
-    let certificate = certificate(network, points);
+    let certificate = certificate(network, points, network.cell_volumes());
     if certificate.is_good() { Ok(certificate) } else { Err(certificate.faults) }
 }
 
-/// What [`validate`] finds, with all that is wrong.
-pub(crate) fn certificate(network: &Network, points: &[DVec3]) -> Certificate {
+/// What [`validate`] finds where grains are to have these volumes, with all that is wrong.
+pub(crate) fn certificate(network: &Network, points: &[DVec3], volumes: &[f64]) -> Certificate {
     let level = network.finest();
     let sides = network.sides();
     let surface = Surface::of_level(level, points, &sides);
-    let volumes: Vec<(GrainId, f64)> =
-        (0u32..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
+    let volumes: Vec<(GrainId, f64)> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
     let points_of_level = || 0..level.vertex_count();
     let node_types: Vec<_> = points_of_level().map(|point| Some(level.node_type(point))).collect();
     let grain_counts: Vec<u8> = points_of_level().map(|point| level.grain_count(point)).collect();

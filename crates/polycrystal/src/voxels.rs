@@ -133,10 +133,11 @@ pub fn smooth_voxels_tuned(
             let (network, points) =
                 Network::of_torus_faces(voxels.domain(), &points, faces, volumes.clone(), options.junctions)
                     .map_err(|error| (error, Faulty::default()))?;
-            let certificate = but_folded(certificate(&network, &points)).map_err(|error| {
-                let sides = network.sides();
-                faulty(error, &Surface::of_level(network.finest(), &points, &sides))
-            })?;
+            let certificate =
+                but_folded(certificate(&network, &points, network.cell_volumes())).map_err(|error| {
+                    let sides = network.sides();
+                    faulty(error, &Surface::of_level(network.finest(), &points, &sides))
+                })?;
             (network, points, certificate)
         } else {
             let elements = found.cut.elements();

@@ -61,7 +61,7 @@ impl fmt::Display for Failure {
             );
         }
         if self.has_shapes {
-            return write!(out, "; give --grain-shapes a lower ratio, or another --rng-seed");
+            return write!(out, "; give --grain-shapes a lower ratio, or other seeds");
         }
         if self.works_without_short_lines {
             return write!(out, "; without --regularize 0, which keeps short triple lines, it works");

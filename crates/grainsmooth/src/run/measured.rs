@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use glam::BVec3;
 use polycrystal::{
-    GrainId, Junctions, NetworkError, Relaxation, SmoothedVoxels, VoxelLabel, VoxelOptions, Voxels,
-    herring_residual, relax, smooth_voxels, validate,
+    Certified, GrainId, Junctions, NetworkError, Relaxation, RelaxationStep, SmoothedVoxels, Volumes,
+    VoxelLabel, VoxelOptions, Voxels, herring_residual, relax_certified, smooth_voxels, validate,
 };
 
 use super::fitted_cells::{FittedCells, fitted_cells};
@@ -115,20 +115,18 @@ impl Polycrystal {
         let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
         progress(Stage::Relaxation, 0, 1);
         let start = Instant::now();
-        let tell = |done, count| progress(Stage::Relaxation, done, count);
-        let relaxed = relax(&self.network, &self.points, &relaxation, tell).map_err(failed)?;
-        self.points = relaxed.finest_points(&self.network);
-        self.add_time(Stage::Relaxation, start.elapsed());
-        progress(Stage::Validation, 0, 1);
+        let tell = |step: RelaxationStep<'_>| progress(Stage::Relaxation, step.done, step.count);
+        let relaxed = relax_certified(&self.network, &self.points, &relaxation, Volumes::Kept, tell);
+        let (relaxed, Certified { points, validation, validated_in }) = relaxed.map_err(failed)?;
+        self.add_time(Stage::Relaxation, start.elapsed().saturating_sub(validated_in));
         let start = Instant::now();
-        let certificate = validate(&self.network, &self.points);
-        self.validation = certificate.map_err(|faults| failed(NetworkError::Invalid(faults)))?;
+        (self.points, self.validation) = (points, validation);
         self.residual = herring_residual(&self.network, &self.points);
         self.attempts.extend(relaxed.given_up);
         if let Origin::Measured(measurement) = &mut self.origin {
             measurement.folds = 0;
         }
-        self.add_time(Stage::Validation, start.elapsed());
+        self.add_time(Stage::Validation, validated_in + start.elapsed());
         Ok(self)
     }
 }

@@ -7,8 +7,9 @@ use glam::DVec3;
 use crate::events::reconnection::Reconnections;
 use crate::flow::balance::Balance;
 use crate::flow::relaxation::Relaxed;
+use crate::validate::certificate;
 use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError};
-use crate::{Collapsed, validate};
+use crate::{Collapsed, Volumes};
 
 /// How a network is made of cells.
 #[derive(Clone, Copy)]
@@ -48,15 +49,10 @@ pub struct RelaxedCells {
 }
 
 impl RelaxedCells {
-    /// A network whose topology has stayed, with its finest points, which are checked.
-    pub(crate) fn validated(
-        network: Network,
-        relaxed: Relaxed,
-        points: Vec<DVec3>,
-    ) -> Result<Self, NetworkError> {
-        let start = Instant::now();
-        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        Ok(Self {
+    /// A network whose topology has stayed.
+    pub(crate) fn of_kept_topology(network: Network, relaxed: Relaxed, certified: Certified) -> Self {
+        let Certified { points, validation, validated_in } = certified;
+        Self {
             network,
             relaxed,
             points,
@@ -64,8 +60,40 @@ impl RelaxedCells {
             merged: Collapsed::default(),
             balance: None,
             validation,
-            validated_in: start.elapsed(),
+            validated_in,
             attempts: Vec::new(),
-        })
+        }
+    }
+}
+
+/// The finest level of a relaxed network, certified.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    /// Its points, as of [`Relaxed::finest_points`].
+    pub points: Vec<DVec3>,
+    /// What validation found.
+    pub validation: Certificate,
+    /// Time that validation took.
+    pub validated_in: Duration,
+}
+
+impl Certified {
+    /// That of a network where its points are. Where volumes are free, grains have those that they have reached.
+    pub(crate) fn new(network: &Network, relaxed: &Relaxed, volumes: Volumes) -> Result<Self, NetworkError> {
+        let points = relaxed.finest_points(network);
+        let start = Instant::now();
+        let reached;
+        let volumes = match volumes {
+            Volumes::Kept => network.cell_volumes(),
+            Volumes::Free => {
+                reached = network.grain_volumes(network.finest(), &points);
+                &reached
+            }
+        };
+        let validation = certificate(network, &points, volumes);
+        if !validation.is_good() {
+            return Err(NetworkError::Invalid(validation.faults));
+        }
+        Ok(Self { points, validation, validated_in: start.elapsed() })
     }
 }

@@ -95,6 +95,11 @@ pub struct Relaxed {
 }
 
 impl Relaxed {
+    /// Points of a level that no step has moved yet.
+    pub(crate) fn new(level: usize, points: Vec<DVec3>) -> Self {
+        Self { level, points, steps: 0, time: 0.0, given_up: Vec::new(), is_flat: false }
+    }
+
     /// The points of the network's finest level.
     ///
     /// # Panics

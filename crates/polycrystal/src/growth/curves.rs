@@ -10,8 +10,8 @@ use super::tuning::GrowthTuning;
 use crate::arcs::switching::CurvedEdges;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::events::reconnection::Reconnections;
-use crate::flow::recipe::RelaxedCells;
-use crate::{CellComplex, Mesh, Network, NetworkError, Relaxed};
+use crate::flow::recipe::{Certified, RelaxedCells};
+use crate::{CellComplex, Mesh, Network, NetworkError, Relaxed, Volumes};
 
 /// Fewest segments of an edge.
 const FEWEST_SEGMENTS: usize = 4;
@@ -78,10 +78,11 @@ impl Front for Curves<'_> {
         time: f64,
     ) -> Result<RelaxedCells, NetworkError> {
         let (network, points) = self.lay()?;
-        let relaxed = Relaxed { level: 0, points, steps, time, given_up: Vec::new(), is_flat: time == 0.0 };
-        let finest = relaxed.finest_points(&network);
-        let volumes = network.grain_volumes(network.finest(), &finest);
-        let cells = RelaxedCells::validated(network.with_cell_volumes(volumes), relaxed, finest)?;
+        let relaxed = Relaxed { steps, time, is_flat: time == 0.0, ..Relaxed::new(0, points) };
+        let certified = Certified::new(&network, &relaxed, Volumes::Free)?;
+        let volumes = network.grain_volumes(network.finest(), &certified.points);
+        let network = network.with_cell_volumes(volumes);
+        let cells = RelaxedCells::of_kept_topology(network, relaxed, certified);
         Ok(RelaxedCells { reconnections, ..cells })
     }
 }

@@ -5,7 +5,7 @@ use voronoi::Tessellation;
 use crate::energy::unit::Unit;
 use crate::events::merged_lines::MergedLines;
 use crate::flow::balance::Balance;
-use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
+use crate::flow::recipe::{Certified, NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, TIME_OF_KEPT_TOPOLOGY};
 use crate::flow::settling::{Settled, settle};
 use crate::flow::tuning::Tuning;
@@ -97,9 +97,9 @@ fn relax_as_they_are(
         Network::with_face_mesh(tessellation, recipe.face_mesh, recipe.junctions, recipe.levels)?;
     let network = network.with_tensions(recipe.tension)?;
     let plan = plan(*relaxation, Start::Flat, tuning);
-    let relaxed = relax_levels(&network, &flat, &plan, watch)?;
-    let points = relaxed.finest_points(&network);
-    RelaxedCells::validated(network, relaxed, points)
+    let certified = |relaxed: &Relaxed| Certified::new(&network, relaxed, Volumes::Kept);
+    let (relaxed, certified) = relax_levels(&network, &flat, &plan, watch, certified)?;
+    Ok(RelaxedCells::of_kept_topology(network, relaxed, certified))
 }
 
 /// The plan for tensions whose mean is 1.
@@ -159,11 +159,12 @@ pub(crate) fn smoothed(
                 watch(RelaxationStep { done, count, time: settled.time + step.time, ..step });
             }
         };
-        let relaxed = relax_levels(&network, &points, &plan(relaxation, start, &tuning), &mut watch_later)?;
+        let plan = plan(relaxation, start, &tuning);
+        let certified = |relaxed: &Relaxed| Certified::new(&network, relaxed, Volumes::Kept);
+        let (relaxed, certified) = relax_levels(&network, &points, &plan, &mut watch_later, certified)?;
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
-        let points = relaxed.finest_points(&network);
-        let cells = RelaxedCells::validated(network, relaxed, points)?;
+        let cells = RelaxedCells::of_kept_topology(network, relaxed, certified);
         let balance =
             (relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &cells.points));
         let reconnections = settled.reconnections;

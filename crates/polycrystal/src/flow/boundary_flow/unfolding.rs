@@ -1,11 +1,12 @@
 //! What becomes of a start that subdivision folds.
 
 use glam::DVec3;
-use subzero::VertexRule;
+use subzero::EdgeId;
 
 use super::{Flow, LevelSectors, displaced};
 use crate::Mesh;
 use crate::flow::tangential::tangential_moves;
+use crate::mesh::id::id;
 
 /// Most steps of either kind where a start is folded by subdivision, and the share of its way that a point goes. The walls of a host whose cells
 /// are as flat as a fiftieth of it take one step.
@@ -48,19 +49,24 @@ impl Flow<'_> {
         let mut is_moved = vec![false; points.len()];
         places.iter().flatten().for_each(|point| is_moved[*point as usize] = true);
         let mut counts = vec![0.0; points.len()];
-        for ends in mesh.edges() {
+        let mut crease_counts = vec![0; points.len()];
+        for (edge, ends) in (0..).map(EdgeId).zip(mesh.edges()) {
             let [a, b] = ends.map(|end| end as usize);
+            if mesh.is_crease(edge) {
+                crease_counts[a] += 1;
+                crease_counts[b] += 1;
+            }
             let way = points[b] - points[a];
             moves[a] += way;
             moves[b] -= way;
             counts[a] += 1.0;
             counts[b] += 1.0;
         }
-        for (point, by) in (0u32..).zip(&mut moves) {
-            let place = point as usize;
-            let moves_it = is_moved[place] && mesh.vertex_rule(point) != VertexRule::Corner;
+        for (place, by) in moves.iter_mut().enumerate() {
+            // What lies within a line can move, also where all points on lines are corners.
+            let moves_it = is_moved[place] && matches!(crease_counts[place], 0 | 2);
             let step = *by * (UNFOLDING / counts[place]);
-            *by = if moves_it { self.freedom(point).project(step) } else { DVec3::ZERO };
+            *by = if moves_it { self.freedom(id(place)).project(step) } else { DVec3::ZERO };
         }
         moves
     }
