@@ -256,7 +256,7 @@ mod tests {
         ];
         let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
         let positive = |mut corners: [u32; 4]| {
-            if super::super::volume(corners.map(|corner| points[corner as usize])) < 0.0 {
+            if volume(corners.map(|corner| points[corner as usize])) < 0.0 {
                 corners.swap(0, 1);
             }
             corners
