@@ -40,7 +40,7 @@ pub fn of_map(
         let measured = read_map(&path, &arguments.options)?;
         let call = format!("grainsmooth.Polycrystal.from_map({:?})", path.display().to_string());
         let run_of = run_of(call, arguments.network, start.elapsed());
-        smooth_map(&path, &measured, run_of, tell).map(Polycrystal::new)
+        smooth_map(&path, measured, run_of, tell).map(Polycrystal::new)
     })
 }
 
@@ -72,7 +72,7 @@ pub fn of_labels(
     let network = MapNetworkOptions { decimate, ..MapNetworkOptions::default() };
     let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), network, Duration::ZERO);
     run(py, threads, progress, move |tell| {
-        smooth_map(Path::new(LABELS), &measured, run_of, tell).map(Polycrystal::new)
+        smooth_map(Path::new(LABELS), measured, run_of, tell).map(Polycrystal::new)
     })
 }
 
@@ -108,7 +108,7 @@ pub fn of_orientations(
         tell(Stage::Map, 0, 1);
         let measured = MeasuredMap::of_orientations(&map, &arguments.options);
         let measured = measured.map_err(|problem| Error::MapFile { path: path.to_owned(), problem })?;
-        smooth_map(path, &measured, run_of, tell).map(Polycrystal::new)
+        smooth_map(path, measured, run_of, tell).map(Polycrystal::new)
     })
 }
 

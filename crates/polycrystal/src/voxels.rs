@@ -108,15 +108,18 @@ pub fn smooth_voxels_tuned(
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
     let mut lattice = Lattice::new(voxels)?;
-    let mut mixed = lattice.mixed_places();
-    let relabelled = lattice.part_what_touches(&mut mixed)?;
-    let staircase = Staircase::new(&lattice, &mixed, &whole_grains(&lattice, &mixed)?);
+    let (staircase, relabelled) = {
+        let mut mixed = lattice.mixed_places();
+        let relabelled = lattice.part_what_touches(&mut mixed)?;
+        (Staircase::new(&lattice, &mixed, &whole_grains(&lattice, &mixed)?), relabelled)
+    };
     let is_periodic = voxels.domain().is_periodic();
-    let sides = sides_of_whole_grains(&staircase.kinds, is_periodic);
+    let kinds = staircase.kinds.clone();
+    let sides = sides_of_whole_grains(&kinds, is_periodic);
     let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
-    let is_open = staircase.kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
+    let is_open = kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
     let wanted = Wanted { volumes: &counts, sides: &sides, is_open };
-    let whole = smoothed(&staircase, &lattice, &wanted, tuning, &progress);
+    let whole = smoothed(staircase, &lattice, &wanted, tuning, &progress);
     let voxel = voxels.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
     let network = |found: &VoxelSurface| -> Result<SmoothedVoxels, (NetworkError, Faulty)> {
@@ -129,7 +132,7 @@ pub fn smooth_voxels_tuned(
             (error, faulty)
         };
         let (network, points, certificate) = if is_periodic {
-            let faces = found.torus_faces(&staircase.kinds);
+            let faces = found.torus_faces(&kinds);
             let (network, points) =
                 Network::of_torus_faces(voxels.domain(), &points, faces, volumes.clone(), options.junctions)
                     .map_err(|error| (error, Faulty::default()))?;
@@ -153,7 +156,7 @@ pub fn smooth_voxels_tuned(
             whole: &whole,
             domain: &lattice.domain(),
             lattice: &lattice,
-            kinds: &staircase.kinds,
+            kinds: &kinds,
             wanted: &wanted,
             shortest_edge: options.shortest_edge,
             tuning,
@@ -173,23 +176,26 @@ pub fn smooth_voxels_tuned(
 
 /// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings.
 fn smoothed(
-    staircase: &Staircase,
-    lattice: &Lattice,
+    staircase: Staircase,
+    lattice: &Lattice<'_>,
     wanted: &Wanted<'_>,
     tuning: &VoxelTuning,
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> VoxelSurface {
-    let faces = &staircase.faces;
     let boxes = Boxes::new(&staircase.places, lattice, tuning.within);
-    let middles = &boxes.middles;
-    let faces_at = at_corners(middles.len(), faces.len(), |face| faces.corners(face));
-    let graph = Graph::new(staircase, &faces_at);
-    let starts = starts(&boxes, &faces_at, |face| faces.corners(face as usize), tuning.apart);
+    let (graph, starts) = {
+        let faces = &staircase.faces;
+        let faces_at = at_corners(staircase.places.len(), faces.len(), |face| faces.corners(face));
+        let corners = |face: u32| faces.corners(face as usize);
+        (Graph::new(&staircase, &faces_at), starts(&boxes, &faces_at, corners, tuning.apart))
+    };
     let mut points = least_bending(&graph, &starts, &boxes, tuning, progress);
-    let cut = CutFaces::new(staircase, lattice, &points);
-    let search = VolumeSearch::new(middles, &cut, wanted, tuning);
-    let volume_error = search.restore(&mut points, &boxes, &vec![false; middles.len()]);
+    let cut = CutFaces::new(&staircase, lattice, &points);
+    // Where there are many voxels, memory is short.
+    drop((staircase.faces, staircase.kind_of));
+    let search = VolumeSearch::new(points.len(), &cut, wanted, tuning);
+    let volume_error = search.restore(&mut points, &boxes, &vec![false; graph.count()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };
     let points = untangling.untangle(points, volume_error);
-    VoxelSurface { points, places: staircase.places.clone(), cut }
+    VoxelSurface { points, places: staircase.places, cut }
 }

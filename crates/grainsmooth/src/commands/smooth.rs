@@ -38,7 +38,7 @@ fn smooth(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String,
     };
     let (files, file) = ResultFiles::of_given(result, path, given)?;
     let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
-    files.fill_and_write(smooth_map(path, &measured, run, progress)?, progress)
+    files.fill_and_write(smooth_map(path, measured, run, progress)?, progress)
 }
 
 /// Relaxes a network.

@@ -47,7 +47,7 @@ pub struct MapRun {
 /// let measured = MeasuredMap::of_labels(map, &MapOptions { min_voxels: 1, ..MapOptions::default() })?;
 /// let network = MapNetworkOptions { decimate: Some(0.0), ..MapNetworkOptions::default() };
 /// let run = MapRun { command_line: String::new(), file: FileOptions::default(), network, read_in: Duration::ZERO };
-/// let polycrystal = smooth_map(Path::new("labels in memory"), &measured, run, &|_, _, _| ())?;
+/// let polycrystal = smooth_map(Path::new("labels in memory"), measured, run, &|_, _, _| ())?;
 /// assert_eq!(polycrystal.network.grain_count(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -56,41 +56,45 @@ pub struct MapRun {
 /// [`Error::NetworkOfMap`] where the map leads to none.
 pub fn smooth_map(
     path: &Path,
-    measured: &MeasuredMap,
+    measured: MeasuredMap,
     run: MapRun,
     progress: Progress<'_>,
 ) -> Result<Polycrystal, Error> {
     let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
     progress(Stage::Network, 0, 1);
     let start = Instant::now();
-    let (network, points, certificate, relabelled, fit) = if run.network.fit_cells {
-        let FittedCells { network, points, fit } = fitted_cells(path, measured)?;
+    let mut map = SmoothedMap {
+        shape: measured.map.shape,
+        dropped: measured.dropped,
+        points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
+        relabelled: 0,
+        slices: measured.map.middle_slices(),
+        fit: None,
+    };
+    let grains = attributes(&measured);
+    let (network, points, certificate) = if run.network.fit_cells {
+        let FittedCells { network, points, fit } = fitted_cells(path, &measured)?;
+        map.fit = Some(fit);
         let certificate =
             validate(&network, &points).map_err(|faults| failed(NetworkError::Invalid(faults)))?;
-        (network, points, certificate, 0, Some(fit))
+        (network, points, certificate)
     } else {
-        let voxels = voxels(&measured.map)?;
         let options = VoxelOptions {
             junctions: Junctions::Crease,
             shortest_edge: run.network.shortest_edge(measured.map.is_plane()),
         };
+        let voxels = voxels(measured.map)?;
         let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
         let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
-        (network, points, certificate, relabelled, None)
+        map.relabelled = relabelled;
+        (network, points, certificate)
     };
     let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
     let measurement = Measurement {
         command_line: run.command_line,
         file: run.file,
-        grains: attributes(measured),
-        map: Some(SmoothedMap {
-            shape: measured.map.shape,
-            dropped: measured.dropped,
-            points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
-            relabelled,
-            slices: measured.map.middle_slices(),
-            fit,
-        }),
+        grains,
+        map: Some(map),
         cut: BVec3::FALSE,
         folds: certificate.faults.0.len(),
     };
@@ -147,10 +151,10 @@ fn attributes(measured: &MeasuredMap) -> GrainAttributes {
 }
 
 /// The voxels of a map in the box that they fill.
-fn voxels(map: &LabelMap) -> Result<Voxels, voronoi::VoronoiError> {
-    let label = |label: &i32| match u32::try_from(*label) {
+fn voxels(map: LabelMap) -> Result<Voxels, voronoi::VoronoiError> {
+    let label = |label: i32| match u32::try_from(label) {
         Ok(grain) => VoxelLabel::of(GrainId(grain)),
         Err(_) => VoxelLabel::EXTERIOR,
     };
-    Ok(Voxels::new(map.domain()?, map.shape, map.labels.iter().map(label).collect()))
+    Ok(Voxels::new(map.domain()?, map.shape, map.labels.into_iter().map(label).collect()))
 }

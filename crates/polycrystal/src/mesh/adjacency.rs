@@ -1,8 +1,12 @@
 use rayon::prelude::*;
-
 use subzero::{EdgeId, FaceId, HalfEdgeId, TriangleMesh};
 
+use crate::mesh::grouped::Grouped;
+use crate::mesh::id::id;
 use crate::{BoundaryId, Elements, LevelView, Mesh};
+
+/// Points whose edges a thread looks at in one go: enough to keep it busy.
+const POINTS_AT_ONCE: usize = 1 << 14;
 
 /// How the elements of a surface meet: triangles in edges, segments in points. In the plane, "edge" means such a point.
 #[derive(Debug)]
@@ -131,32 +135,94 @@ impl<'a> Adjacency<'a> {
 
     /// The adjacency of any elements.
     pub(crate) fn of_elements(elements: Elements<'a>, boundary_of: &'a [BoundaryId]) -> Self {
-        let mut incidences: Vec<Incidence> = match elements {
-            Elements::Triangles(triangles) => incidences_of_triangles(triangles),
-            Elements::Refined(mesh) => return Self::of_mesh(mesh, boundary_of, true),
-            Elements::Segments(segments) => incidences_of_segments(segments).collect(),
-        };
-        incidences.par_sort_unstable();
-        let mut inner = Vec::new();
-        let is_inner = |at: &[Incidence]| {
-            let [a, b] = at else { return false };
-            boundary_of[a.element as usize] == boundary_of[b.element as usize]
-                && a.direction(elements) != b.direction(elements)
-        };
-        let mut others = Vec::new();
-        for at in incidences.chunk_by(|a, b| a.edge == b.edge) {
-            if is_inner(at) {
-                inner.push([at[0].element, at[1].element]);
-            } else {
-                others.extend_from_slice(at);
+        match elements {
+            Elements::Triangles(triangles) => Self::of_triangles(triangles, boundary_of),
+            Elements::Refined(mesh) => Self::of_mesh(mesh, boundary_of, true),
+            Elements::Segments(segments) => {
+                let mut incidences: Vec<Incidence> = incidences_of_segments(segments).collect();
+                incidences.par_sort_unstable();
+                let mut sorted = SortedOut::default();
+                by_edge(&incidences).for_each(|at| sorted.add(at, elements, boundary_of));
+                sorted.into()
             }
         }
-        Self { inner: Inner::Listed(inner), incidences: others }
+    }
+
+    /// The adjacency of triangles by their corners alone. Numbers of edges grow, with gaps.
+    fn of_triangles(triangles: &[[u32; 3]], boundary_of: &[BoundaryId]) -> Self {
+        let point_count = triangles.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+        // By the lower end of each edge: the other end, and the number of the edge among those of all triangles.
+        let half_edges = Grouped::new(
+            point_count,
+            (0u32..).zip(triangles).flat_map(|(triangle, [a, b, c])| {
+                let edges = (3 * triangle..).zip([[a, b], [b, c], [c, a]]);
+                edges.map(|(half_edge, [from, to])| (*from.min(to) as usize, (*from.max(to), half_edge)))
+            }),
+        );
+        let elements = Elements::Triangles(triangles);
+        let at_points = |first: usize| {
+            let mut sorted = SortedOut::default();
+            let mut edge = id(half_edges.start(first));
+            let (mut at_point, mut at_edge) = (Vec::new(), Vec::new());
+            for point in first..point_count.min(first + POINTS_AT_ONCE) {
+                at_point.clear();
+                at_point.extend_from_slice(half_edges.of(point));
+                at_point.sort_unstable();
+                for at in at_point.chunk_by(|one, other| one.0 == other.0) {
+                    at_edge.clear();
+                    at_edge.extend(at.iter().map(|(_, half_edge)| Incidence {
+                        edge,
+                        element: half_edge / 3,
+                        corner: [0, 1, 2][(half_edge % 3) as usize],
+                    }));
+                    sorted.add(&at_edge, elements, boundary_of);
+                    edge += id(at.len());
+                }
+            }
+            sorted
+        };
+        let chunks = (0..point_count.div_ceil(POINTS_AT_ONCE)).into_par_iter();
+        let chunks: Vec<SortedOut> = chunks.map(|chunk| at_points(chunk * POINTS_AT_ONCE)).collect();
+        drop(half_edges);
+        let mut all = SortedOut::default();
+        for chunk in chunks {
+            all.inner.extend(chunk.inner);
+            all.others.extend(chunk.others);
+        }
+        all.into()
     }
 
     /// The incidences of each edge that is not inside a boundary.
     pub(crate) fn non_manifold_edges(&self) -> impl Iterator<Item = &[Incidence]> {
         by_edge(&self.incidences)
+    }
+}
+
+/// Edges inside boundaries, and the others.
+#[derive(Default)]
+struct SortedOut {
+    inner: Vec<[u32; 2]>,
+    others: Vec<Incidence>,
+}
+
+impl SortedOut {
+    /// Adds the incidences of an edge.
+    fn add(&mut self, at: &[Incidence], elements: Elements<'_>, boundary_of: &[BoundaryId]) {
+        match at {
+            [a, b]
+                if boundary_of[a.element as usize] == boundary_of[b.element as usize]
+                    && a.direction(elements) != b.direction(elements) =>
+            {
+                self.inner.push([a.element, b.element]);
+            }
+            _ => self.others.extend_from_slice(at),
+        }
+    }
+}
+
+impl From<SortedOut> for Adjacency<'_> {
+    fn from(SortedOut { inner, others }: SortedOut) -> Self {
+        Self { inner: Inner::Listed(inner), incidences: others }
     }
 }
 
@@ -195,24 +261,6 @@ fn refined_incidences(mesh: &TriangleMesh, incidences: &[Incidence]) -> Vec<Inci
         })
     });
     halves.collect()
-}
-
-fn incidences_of_triangles(triangles: &[[u32; 3]]) -> Vec<Incidence> {
-    let mut sides: Vec<([u32; 2], u32, u8)> = (0..triangles.len())
-        .into_par_iter()
-        .flat_map_iter(|triangle| {
-            let [a, b, c] = triangles[triangle];
-            let element = u32::try_from(triangle).expect("ids fit 32 bits");
-            let edges = (0u8..).zip([[a, b], [b, c], [c, a]]);
-            edges.map(move |(corner, [from, to])| ([from.min(to), from.max(to)], element, corner))
-        })
-        .collect();
-    sides.par_sort_unstable();
-    let edges = (0u32..).zip(sides.chunk_by(|a, b| a.0 == b.0));
-    let incidences = edges.flat_map(|(edge, sides)| {
-        sides.iter().map(move |&(_, element, corner)| Incidence { edge, element, corner })
-    });
-    incidences.collect()
 }
 
 fn incidences_of_segments(segments: &[[u32; 2]]) -> impl Iterator<Item = Incidence> {

@@ -29,6 +29,11 @@ impl<T: Copy + Default> Grouped<T> {
         &self.items[self.starts[group]..self.starts[group + 1]]
     }
 
+    /// Number of items in the groups before one.
+    pub(crate) fn start(&self, group: usize) -> usize {
+        self.starts[group]
+    }
+
     /// Number of groups.
     pub(crate) fn count(&self) -> usize {
         self.starts.len() - 1

@@ -1,6 +1,6 @@
 //! Fewer elements: short edges collapse, and grains get their volumes back.
 
-use glam::DVec3;
+use glam::{DVec3, UVec3};
 use voronoi::{Domain, PeriodicVertex};
 
 use crate::check::box_tree::{Bounds, BoxTree};
@@ -25,7 +25,7 @@ pub(super) struct Decimation<'a> {
     pub(super) whole: &'a VoxelSurface,
     /// The box, in units of voxels.
     pub(super) domain: &'a Domain,
-    pub(super) lattice: &'a Lattice,
+    pub(super) lattice: &'a Lattice<'a>,
     pub(super) kinds: &'a [Kind],
     pub(super) wanted: &'a Wanted<'a>,
     /// Shorter edges collapse.
@@ -110,10 +110,10 @@ impl Decimation<'_> {
                 (kept, CutFaces { elements: ElementList::Segments(segments), kind_of, copies })
             }
         };
-        let places: Vec<_> = kept.iter().map(|point| places[*point as usize]).collect();
+        let places: Vec<UVec3> = kept.iter().map(|point| places[*point as usize]).collect();
         let mut points: Vec<DVec3> = kept.iter().map(|point| points[*point as usize]).collect();
         let boxes = Boxes::new(&places, self.lattice, self.tuning.within_when_decimated);
-        let search = VolumeSearch::new(&boxes.middles, &cut, self.wanted, self.tuning);
+        let search = VolumeSearch::new(points.len(), &cut, self.wanted, self.tuning);
         search.restore(&mut points, &boxes, &vec![false; kept.len()]);
         VoxelSurface { points, places, cut }
     }

@@ -35,7 +35,7 @@ impl CutFaces {
     }
 
     /// Cuts each square along its shorter diagonal, unless that would fold it and the other one does not.
-    pub(super) fn new(staircase: &Staircase, lattice: &Lattice, points: &[DVec3]) -> Self {
+    pub(super) fn new(staircase: &Staircase, lattice: &Lattice<'_>, points: &[DVec3]) -> Self {
         let (kinds, periods) = (&staircase.kinds, lattice.periods());
         let corner = |face: usize, corner: usize| PeriodicVertex {
             vertex: staircase.faces.corners(face)[corner],

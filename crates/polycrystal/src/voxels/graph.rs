@@ -1,18 +1,25 @@
 //! How points of boundaries are neighbours, for least bending.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
 use crate::voxels::staircase::{Faces, Staircase};
 
-/// The neighbours of each point along the edges of faces: those along lines first.
+/// The neighbours of each point along the edges of faces.
 ///
 /// Two faces of one kind meet in an edge inside a boundary (in the plane: in a point inside a line); every other edge is part of a line.
+#[derive(Default)]
 pub(super) struct Graph {
     starts: Vec<usize>,
+    /// Those along lines first.
     neighbors: Vec<u32>,
     along_lines: Vec<u8>,
 }
+
+/// Points whose neighbours a thread looks for in one go: enough to keep it busy.
+const POINTS_AT_ONCE: usize = 1 << 14;
 
 /// What a point is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,21 +32,35 @@ pub(super) enum Part {
 
 impl Graph {
     pub(super) fn new(staircase: &Staircase, at_points: &Grouped<u32>) -> Self {
-        let all: Vec<(Vec<u32>, u8)> = (0..staircase.places.len())
-            .into_par_iter()
-            .map(|point| match &staircase.faces {
-                Faces::Squares(squares) => around_squares(squares, &staircase.kind_of, at_points, point),
-                Faces::Segments(segments) => at_segments(segments, &staircase.kind_of, at_points, point),
-            })
-            .collect();
-        let mut starts = Vec::with_capacity(all.len() + 1);
-        starts.push(0);
-        let mut neighbors = Vec::with_capacity(5 * all.len());
-        for (own, _) in &all {
-            neighbors.extend_from_slice(own);
-            starts.push(neighbors.len());
+        let count = staircase.places.len();
+        let around = |points: Range<usize>| {
+            let mut some = Self::default();
+            for point in points {
+                let along = match &staircase.faces {
+                    Faces::Squares(squares) => {
+                        around_squares(squares, &staircase.kind_of, at_points, point, &mut some.neighbors)
+                    }
+                    Faces::Segments(segments) => {
+                        at_segments(segments, &staircase.kind_of, at_points, point, &mut some.neighbors)
+                    }
+                };
+                some.along_lines.push(along);
+                some.starts.push(some.neighbors.len());
+            }
+            some
+        };
+        let chunks = (0..count.div_ceil(POINTS_AT_ONCE)).into_par_iter().map(|chunk| {
+            let first = chunk * POINTS_AT_ONCE;
+            around(first..count.min(first + POINTS_AT_ONCE))
+        });
+        let mut all = Self { starts: vec![0], ..Self::default() };
+        for some in chunks.collect::<Vec<Self>>() {
+            let before = all.neighbors.len();
+            all.starts.extend(some.starts.iter().map(|end| before + end));
+            all.neighbors.extend(some.neighbors);
+            all.along_lines.extend(some.along_lines);
         }
-        Self { starts, neighbors, along_lines: all.iter().map(|(_, count)| *count).collect() }
+        all
     }
 
     pub(super) fn count(&self) -> usize {
@@ -60,7 +81,7 @@ impl Graph {
     }
 
     /// Those along lines, and the others.
-    pub(super) fn along_and_off(&self, point: usize) -> (&[u32], &[u32]) {
+    fn along_and_off(&self, point: usize) -> (&[u32], &[u32]) {
         self.beside(point).split_at(usize::from(self.along_lines[point]))
     }
 
@@ -72,14 +93,24 @@ impl Graph {
             Part::Node => &[],
         }
     }
+
+    /// Those that follow a point: along a line all but its ends, beside it those inside boundaries.
+    pub(super) fn followers(&self, point: usize) -> impl Iterator<Item = u32> {
+        let (along, off) = self.along_and_off(point);
+        let part = |other: &u32| self.part(*other as usize);
+        let along = along.iter().filter(move |other| part(other) != Part::Node);
+        along.chain(off.iter().filter(move |other| part(other) == Part::Boundary)).copied()
+    }
 }
 
+/// Adds the neighbours of a point, and returns how many are along lines.
 fn around_squares(
     squares: &[[u32; 4]],
     kind_of: &[u32],
     at_points: &Grouped<u32>,
     point: usize,
-) -> (Vec<u32>, u8) {
+    neighbors: &mut Vec<u32>,
+) -> u8 {
     let mut ends: Vec<(u32, u32)> = Vec::with_capacity(16);
     for square in at_points.of(point) {
         let corners = &squares[*square as usize];
@@ -90,25 +121,27 @@ fn around_squares(
     ends.sort_unstable();
     let is_inside = |at: &[(u32, u32)]| matches!(at, [one, other] if one.1 == other.1);
     let edges = || ends.chunk_by(|one, other| one.0 == other.0);
-    let mut neighbors: Vec<u32> = edges().filter(|at| !is_inside(at)).map(|at| at[0].0).collect();
-    let along = neighbors.len();
+    let before = neighbors.len();
+    neighbors.extend(edges().filter(|at| !is_inside(at)).map(|at| at[0].0));
+    let along = neighbors.len() - before;
     neighbors.extend(edges().filter(|at| is_inside(at)).map(|at| at[0].0));
-    (neighbors, u8::try_from(along).expect("a point of the lattice has six edges"))
+    u8::try_from(along).expect("a point of the lattice has six edges, each with two sheets at most")
 }
 
+/// As [`around_squares`].
 fn at_segments(
     segments: &[[u32; 2]],
     kind_of: &[u32],
     at_points: &Grouped<u32>,
     point: usize,
-) -> (Vec<u32>, u8) {
-    let other = |segment: &u32| {
+    neighbors: &mut Vec<u32>,
+) -> u8 {
+    let at = at_points.of(point);
+    neighbors.extend(at.iter().map(|segment| {
         let [start, end] = segments[*segment as usize];
         if start as usize == point { end } else { start }
-    };
-    let at = at_points.of(point);
-    let neighbors: Vec<u32> = at.iter().map(other).collect();
+    }));
     let is_inside = matches!(at, [one, other] if kind_of[*one as usize] == kind_of[*other as usize]);
-    // Where lines meet nothing is to be straight.
-    (neighbors, if is_inside { 0 } else { 1 })
+    // Where lines meet nothing is to be straight: such a point counts as one where a single line ends.
+    u8::from(!is_inside)
 }

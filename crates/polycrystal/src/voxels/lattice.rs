@@ -1,23 +1,24 @@
 //! Labels of voxels, and the points between them.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use glam::{BVec3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{Dimension, Domain};
 
-use crate::voxels::labels::{OUTSIDE, Voxels};
+use crate::voxels::labels::{OUTSIDE, VoxelLabel, Voxels};
 use crate::voxels::pattern::{Meeting, SplitPoint, copies, octants_around, touching, two_sheets};
 use crate::{GrainId, NetworkError};
 
 /// Labels of voxels (in the plane: pixels), x fastest, and how many each has.
-pub(super) struct Lattice {
+pub(super) struct Lattice<'a> {
     /// Number of voxels along each axis.
     pub(super) shape: [usize; 3],
     /// Along which axes the last voxels touch the first.
     pub(super) periodic: [bool; 3],
     pub(super) is_plane: bool,
-    pub(super) labels: Vec<u32>,
+    pub(super) labels: Cow<'a, [VoxelLabel]>,
     /// Number of voxels of each label but [`OUTSIDE`].
     pub(super) counts: Vec<u64>,
     /// The same before any voxel changed its label. By these it is decided which grain is joined along an edge, so that a change has no effect far away.
@@ -48,17 +49,17 @@ struct Change {
     label: u32,
 }
 
-impl Lattice {
+impl<'a> Lattice<'a> {
     /// # Errors
     /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`]; [`NetworkError::ShortPeriod`].
-    pub(super) fn new(voxels: &Voxels) -> Result<Self, NetworkError> {
-        let labels: Vec<u32> = voxels.labels().iter().map(|label| label.0).collect();
-        let largest =
-            labels.par_iter().filter(|label| **label != OUTSIDE).max().ok_or(NetworkError::NoGrain)?;
+    pub(super) fn new(voxels: &'a Voxels) -> Result<Self, NetworkError> {
+        let labels = voxels.labels();
+        let of_grains = || labels.iter().map(|label| label.0).filter(|label| *label != OUTSIDE);
+        let largest = of_grains().max().ok_or(NetworkError::NoGrain)?;
         // A number as large as there are voxels leaves out a smaller one.
-        let mut counts = vec![0; (*largest as usize).min(labels.len()) + 1];
-        for label in labels.iter().filter(|label| **label != OUTSIDE) {
-            if let Some(count) = counts.get_mut(*label as usize) {
+        let mut counts = vec![0; (largest as usize).min(labels.len()) + 1];
+        for label in of_grains() {
+            if let Some(count) = counts.get_mut(label as usize) {
                 *count += 1;
             }
         }
@@ -76,7 +77,15 @@ impl Lattice {
         }
         let is_plane = voxels.domain().dimension() == Dimension::Two;
         let sizes = counts.clone();
-        Ok(Self { shape, periodic, is_plane, labels, counts, sizes, changes: BTreeMap::new() })
+        Ok(Self {
+            shape,
+            periodic,
+            is_plane,
+            labels: Cow::Borrowed(labels),
+            counts,
+            sizes,
+            changes: BTreeMap::new(),
+        })
     }
 
     /// The box that the voxels fill, in units of voxels.
@@ -108,13 +117,6 @@ impl Lattice {
         }
     }
 
-    /// The axes across the walls that a place is on.
-    pub(super) fn is_on_walls(&self, place: Place) -> BVec3 {
-        BVec3::from_array(std::array::from_fn(|axis| {
-            !self.periodic[axis] && (place[axis] == 0 || place[axis] == self.shape[axis])
-        }))
-    }
-
     /// The axis along which there are most voxels; of equals the last, along which points are numbered.
     pub(super) fn longest_axis(&self) -> usize {
         (0..3).max_by_key(|axis| self.shape[*axis]).unwrap_or(0)
@@ -128,7 +130,7 @@ impl Lattice {
     /// The label of the voxel above a place, so many steps on; that of the outside beyond the grid.
     fn label(&self, place: Place, step: [isize; 3]) -> u32 {
         let voxel = self.voxel(place, step);
-        voxel.map_or(OUTSIDE, |voxel| self.labels[voxel])
+        voxel.map_or(OUTSIDE, |voxel| self.labels[voxel].0)
     }
 
     /// The number of that voxel, if it is one of the grid.
@@ -148,7 +150,9 @@ impl Lattice {
 
     /// The labels of the octants of a place.
     fn octants(&self, place: Place) -> [u32; 8] {
-        std::array::from_fn(|octant| self.voxel_in(place, octant).map_or(OUTSIDE, |voxel| self.labels[voxel]))
+        std::array::from_fn(|octant| {
+            self.voxel_in(place, octant).map_or(OUTSIDE, |voxel| self.labels[voxel].0)
+        })
     }
 
     /// The places where not all labels are the same, in order, plane by plane.
@@ -177,7 +181,7 @@ impl Lattice {
             ];
             let column = |x: Option<usize>| {
                 let x = self.wrapped(0, x);
-                rows.map(|row| row.zip(x).map_or(OUTSIDE, |(row, x)| row[x]))
+                rows.map(|row| row.zip(x).map_or(OUTSIDE, |(row, x)| row[x].0))
             };
             let mut left = column(None);
             for x in 0..self.place_count(0) {
@@ -241,8 +245,8 @@ impl Lattice {
             for place in places {
                 // What changed before may have mended this.
                 let Some(Change { voxel, label }) = self.change_at(place) else { continue };
-                let was = std::mem::replace(&mut self.labels[voxel], label);
-                self.counts[was as usize] -= 1;
+                let was = std::mem::replace(&mut self.labels.to_mut()[voxel], VoxelLabel(label));
+                self.counts[was.0 as usize] -= 1;
                 if label != OUTSIDE {
                     self.counts[label as usize] += 1;
                 }
@@ -313,7 +317,7 @@ impl Lattice {
 
     /// How many of the voxels beside one have its label, and the label that most of the others have; nothing where the voxel is all that its grain has.
     fn loneliness(&self, voxel: usize) -> Option<(usize, u32)> {
-        let own = self.labels[voxel];
+        let own = self.labels[voxel].0;
         if own == OUTSIDE || self.counts[own as usize] < 2 {
             return None;
         }
@@ -321,7 +325,7 @@ impl Lattice {
         let beside = (0..6).filter_map(|face| {
             let mut step = [0; 3];
             step[face / 2] = if face % 2 == 0 { -1 } else { 1 };
-            self.voxel(place, step).map(|voxel| self.labels[voxel])
+            self.voxel(place, step).map(|voxel| self.labels[voxel].0)
         });
         let mut labels: Vec<u32> = beside.collect();
         labels.sort_unstable();

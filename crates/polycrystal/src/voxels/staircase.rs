@@ -1,5 +1,6 @@
 //! The boundaries of voxels as they are: a square for each face between different labels (in the plane: a segment).
 
+use glam::UVec3;
 use rayon::prelude::*;
 use voronoi::{CellId, Translation, Wall};
 
@@ -13,8 +14,8 @@ use crate::{GrainId, Side};
 ///
 /// The points of a surface net, one between eight voxels, joined by the faces between these are the same complex as the faces themselves (Frisken, 2022).
 pub(super) struct Staircase {
-    /// Where each point is.
-    pub(super) places: Vec<Place>,
+    /// The [`Place`] of each point.
+    pub(super) places: Vec<UVec3>,
     pub(super) faces: Faces,
     /// By how many periods each face is moved from its place in the box to where its first side is whole; nothing where the lattice has no periods.
     pub(super) moved: Vec<Translation>,
@@ -94,11 +95,12 @@ const NONE: u32 = u32::MAX;
 
 impl Staircase {
     /// `whole` has by how much voxels are moved so that grains are whole.
-    pub(super) fn new(lattice: &Lattice, mixed: &[Vec<MixedPlace>], whole: &[Translation]) -> Self {
+    pub(super) fn new(lattice: &Lattice<'_>, mixed: &[Vec<MixedPlace>], whole: &[Translation]) -> Self {
         let numbering = Numbering::new(lattice, mixed);
         let mut places = Vec::with_capacity(numbering.count);
         for mixed in mixed.iter().flatten() {
-            places.extend((0..mixed.copies.count).map(|_| mixed.place));
+            let place = UVec3::from_array(mixed.place.map(id));
+            places.extend((0..mixed.copies.count).map(|_| place));
         }
         let [_, height, depth] = lattice.shape;
         let (faces, found) = if lattice.is_plane {
@@ -121,10 +123,10 @@ impl Staircase {
     }
 
     /// By how many periods a corner of a face is moved where the first side of the face is whole. Corners at the first places may belong behind the last.
-    pub(super) fn corner_moved(&self, lattice: &Lattice, face: usize, corner: usize) -> Translation {
+    pub(super) fn corner_moved(&self, lattice: &Lattice<'_>, face: usize, corner: usize) -> Translation {
         let Some(moved) = self.moved.get(face) else { return Translation::ZERO };
         let corners = self.faces.corners(face);
-        let at = |corner: u32, axis: usize| self.places[corner as usize][axis];
+        let at = |corner: u32, axis: usize| self.places[corner as usize][axis] as usize;
         let behind = |axis: usize| {
             let last = lattice.shape[axis] - 1;
             lattice.periodic[axis]
@@ -147,7 +149,7 @@ struct Numbering<'a> {
 }
 
 impl<'a> Numbering<'a> {
-    fn new(lattice: &Lattice, mixed: &'a [Vec<MixedPlace>]) -> Self {
+    fn new(lattice: &Lattice<'_>, mixed: &'a [Vec<MixedPlace>]) -> Self {
         let size = [0, 1, 2].map(|axis| lattice.place_count(axis));
         let mut numbering =
             Self { size, first: vec![NONE; size.iter().product()], several: Vec::new(), count: 0 };
@@ -179,7 +181,7 @@ impl<'a> Numbering<'a> {
 
 /// The faces below, left and in front of the voxels of a plane, and behind the last ones.
 fn squares_of_plane(
-    lattice: &Lattice,
+    lattice: &Lattice<'_>,
     numbering: &Numbering<'_>,
     whole: &[Translation],
     z: usize,
@@ -207,7 +209,7 @@ fn squares_of_plane(
 }
 
 fn segments_of_row(
-    lattice: &Lattice,
+    lattice: &Lattice<'_>,
     numbering: &Numbering<'_>,
     whole: &[Translation],
     y: usize,
@@ -256,7 +258,7 @@ impl FaceSides {
 
 /// The faces below a voxel along each axis, and above the last voxels, by axis, lower corner and sides; those between different labels.
 fn for_faces(
-    lattice: &Lattice,
+    lattice: &Lattice<'_>,
     whole: &[Translation],
     voxel: Place,
     axes: usize,
@@ -265,20 +267,20 @@ fn for_faces(
     let [width, height, _] = lattice.shape;
     let strides = [1, width, width * height];
     let number = voxel[0] + strides[1] * voxel[1] + strides[2] * voxel[2];
-    let own = lattice.labels[number];
+    let own = lattice.labels[number].0;
     let moved = |voxel: usize| whole.get(voxel).copied().unwrap_or(Translation::ZERO);
     for (axis, wall) in (0..axes).zip([0, 2, 4]) {
         let is_first = voxel[axis] == 0;
         let is_periodic = lattice.periodic[axis];
         let (before, below) = if !is_first {
             let before = number - strides[axis];
-            (lattice.labels[before], moved(before))
+            (lattice.labels[before].0, moved(before))
         } else if is_periodic {
             // The last voxel stands a period below.
             let before = number + strides[axis] * (lattice.shape[axis] - 1);
             let mut step = Translation::ZERO;
             step.0[axis] = 1;
-            (lattice.labels[before], moved(before) + step)
+            (lattice.labels[before].0, moved(before) + step)
         } else {
             (OUTSIDE, moved(number))
         };

@@ -1,19 +1,19 @@
 //! The boundaries of voxels while they are made.
 
-use glam::{BVec3, DVec3};
+use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 use voronoi::PeriodicVertex;
 
+use crate::mesh::id::id;
 use crate::voxels::elements::CutFaces;
 use crate::voxels::labels::Voxels;
-use crate::voxels::lattice::Place;
 use crate::voxels::staircase::Kind;
 
 /// Points of the lattice in units of voxels, and elements between them and their copies.
 pub(super) struct VoxelSurface {
     pub(super) points: Vec<DVec3>,
     /// The place of the staircase that each point belongs to.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<UVec3>,
     pub(super) cut: CutFaces,
 }
 
@@ -36,10 +36,9 @@ impl VoxelSurface {
     /// The points in the unit of the domain: exactly on its walls where they were on those of the lattice.
     pub(super) fn in_domain(&self, voxels: &Voxels) -> Vec<DVec3> {
         let (lower, upper, spacing) = (voxels.domain().lower(), voxels.domain().upper(), voxels.spacing());
-        let of_point = |(point, place): (&DVec3, &Place)| {
-            let inside = lower + *point * spacing;
-            let is_upper = BVec3::from_array(std::array::from_fn(|axis| place[axis] == voxels.shape()[axis]));
-            DVec3::select(is_upper, upper, inside)
+        let last = UVec3::from_array(voxels.shape().map(id));
+        let of_point = |(point, place): (&DVec3, &UVec3)| {
+            DVec3::select(place.cmpeq(last), upper, lower + *point * spacing)
         };
         self.points.par_iter().zip(&self.places).map(of_point).collect()
     }

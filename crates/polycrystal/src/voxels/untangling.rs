@@ -1,13 +1,12 @@
 //! Points that leave no element that crosses another, and fewer folds.
 
 use cancellation::check_cancelled;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::Surface;
 use crate::check::folds::folded_pairs;
 use crate::check::intersections::{boundary_boxes, crossing_elements};
-use crate::mesh::adjacency::Adjacency;
+use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::Grouped;
 use crate::voxels::bending::Boxes;
@@ -22,9 +21,9 @@ const VOLUME_TOLERANCE: f64 = 1e-12;
 /// What points are moved by.
 pub(super) struct Untangling<'a> {
     pub(super) graph: &'a Graph,
-    pub(super) boxes: &'a Boxes,
-    /// Where points start, and cross nowhere.
-    pub(super) starts: &'a [DVec3],
+    pub(super) boxes: &'a Boxes<'a>,
+    /// Where points start, as displacements from the middles of their boxes, and cross nowhere.
+    pub(super) starts: &'a [Vec3],
     pub(super) search: &'a VolumeSearch<'a>,
     pub(super) tuning: &'a VoxelTuning,
 }
@@ -43,8 +42,16 @@ struct Untangled {
 struct Neighbors<'a> {
     adjacency: Adjacency<'a>,
     boundaries: BoundaryElements<'a>,
+}
+
+impl Neighbors<'_> {
     /// Pairs in one boundary.
-    pairs: Vec<[u32; 2]>,
+    fn pairs(&self) -> &[[u32; 2]] {
+        let Inner::Listed(pairs) = &self.adjacency.inner else {
+            unreachable!("the adjacency of loose elements is a list")
+        };
+        pairs
+    }
 }
 
 impl Untangling<'_> {
@@ -52,15 +59,14 @@ impl Untangling<'_> {
     ///
     /// Folds stay where grains are one voxel thick: a plate has a rim.
     pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
-        let surface = self.search.surface;
+        let surface = self.search.surface(&[]);
         let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
-        let pairs = adjacency.inner.pairs();
-        let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface), pairs };
+        let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface) };
         let free = vec![false; points.len()];
         let mut best = self.without_crossings(points, free, volume_error, &neighbors);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, &neighbors.pairs);
+            let is_held = self.smooth_folds(&mut points, neighbors.pairs());
             let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
             if volume_error > VOLUME_TOLERANCE {
                 break;
@@ -85,16 +91,16 @@ impl Untangling<'_> {
         mut volume_error: f64,
         neighbors: &Neighbors<'_>,
     ) -> Untangled {
-        let surface = self.search.surface;
         let mut home = None;
         for round in 0.. {
-            let Neighbors { adjacency, boundaries, pairs } = neighbors;
+            let Neighbors { adjacency, boundaries } = neighbors;
             let crossings = {
-                let now = Surface { points: &self.search.copies.with_copies(&points), ..surface };
+                let with_copies = self.search.cut.copies.with_copies(&points);
+                let now = self.search.surface(&with_copies);
                 crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries))
             };
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = self.folds(&points, pairs);
+                let folds = self.folds(&points, neighbors.pairs());
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
             let home = home.get_or_insert_with(|| self.home());
@@ -110,7 +116,8 @@ impl Untangling<'_> {
 
     /// Where points start, moved so that grains have their volumes.
     fn home(&self) -> Vec<DVec3> {
-        let mut home = self.starts.to_vec();
+        let start = |(point, start): (usize, &Vec3)| self.boxes.middle(point) + start.as_dvec3();
+        let mut home: Vec<DVec3> = self.starts.iter().enumerate().map(start).collect();
         let free = vec![false; home.len()];
         self.search.restore(&mut home, self.boxes, &free);
         home
@@ -156,15 +163,15 @@ impl Untangling<'_> {
     }
 
     fn folds(&self, points: &[DVec3], neighbors: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        let with_copies = self.search.copies.with_copies(points);
-        folded_pairs(neighbors, &self.search.surface.elements.normals(&with_copies), 0.0)
+        let cut = self.search.cut;
+        folded_pairs(neighbors, &cut.elements().normals(&cut.copies.with_copies(points)), 0.0)
     }
 
     /// The corners of elements, and all points so many edges around them.
     fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
         let mut marked = vec![false; self.graph.count()];
-        let corners = pairs.iter().flatten().map(|element| self.search.surface.elements.corners(*element));
-        let copies = self.search.copies;
+        let (elements, copies) = (self.search.cut.elements(), &self.search.cut.copies);
+        let corners = pairs.iter().flatten().map(|element| elements.corners(*element));
         let mut last: Vec<u32> =
             corners.flat_map(|corners| corners.to_vec()).map(|corner| copies.original(corner)).collect();
         for ring in 0..=rings {
@@ -177,14 +184,15 @@ impl Untangling<'_> {
     }
 }
 
-/// Where the points of a staircase start: several at one place stand apart, each a part of the way to the middle of its own faces. So no two elements cross.
+/// Where the points of a staircase start, from the middles of their boxes: several at one place stand apart, each a part of the way to the middle of its own faces. So no two
+/// elements cross.
 pub(super) fn starts<'a>(
-    boxes: &Boxes,
+    boxes: &Boxes<'_>,
     faces_at: &Grouped<u32>,
     corners: impl Fn(u32) -> &'a [u32] + Sync,
     apart: f64,
-) -> Vec<DVec3> {
-    let places = &boxes.middles;
+) -> Vec<Vec3> {
+    let places = boxes.places;
     let is_alone = |point: usize| {
         let near = [point.checked_sub(1), Some(point + 1)];
         near.into_iter().flatten().filter_map(|other| places.get(other)).all(|other| *other != places[point])
@@ -194,13 +202,12 @@ pub(super) fn starts<'a>(
         sum / count
     };
     let start = |point: usize| {
-        let place = places[point];
         if is_alone(point) {
-            return place;
+            return Vec3::ZERO;
         }
-        let to = |corner: &u32| across(boxes.periods, place, places[*corner as usize]);
+        let to = |corner: &u32| across(boxes.periods, boxes.middle(point), boxes.middle(*corner as usize));
         let middle = |face: &u32| mean(&mut corners(*face).iter().map(to));
-        place + apart * mean(&mut faces_at.of(point).iter().map(middle))
+        (apart * mean(&mut faces_at.of(point).iter().map(middle))).as_vec3()
     };
     (0..places.len()).into_par_iter().map(start).collect()
 }

@@ -10,7 +10,6 @@ use crate::mesh::grouped::Grouped;
 use crate::mesh::volume::{ConeSum, boundary_cones};
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::voxels::bending::Boxes;
-use crate::voxels::copies::Copies;
 use crate::voxels::elements::CutFaces;
 use crate::voxels::tuning::VoxelTuning;
 use crate::{Elements, Side, Surface};
@@ -33,52 +32,51 @@ pub(super) struct Wanted<'a> {
 
 /// Elements, and how they meet in points.
 pub(super) struct VolumeSearch<'a> {
-    /// Its points stand for any others, which have the same copies.
-    pub(super) surface: Surface<'a>,
-    pub(super) copies: &'a Copies,
+    pub(super) cut: &'a CutFaces,
     at_points: Grouped<u32>,
     wanted: &'a Wanted<'a>,
     tuning: &'a VoxelTuning,
 }
 
 /// How the volumes of grains grow with a point.
+#[derive(Default)]
 struct Slopes {
-    /// Of each point, where its slopes start.
-    starts: Vec<usize>,
     of_grains: Vec<(u32, DVec3)>,
-    /// How far each point goes along its slopes: the inverse of the area that stands on it.
-    mobilities: Vec<f64>,
+    /// How far the point goes along its slopes: the inverse of the area that stands on it.
+    mobility: f64,
 }
 
-impl Slopes {
-    fn of(&self, point: usize) -> &[(u32, DVec3)] {
-        &self.of_grains[self.starts[point]..self.starts[point + 1]]
-    }
-}
+/// Points whose part of the matrix a thread adds up in one go; sums depend on it, but not on the number of threads.
+const POINTS_AT_ONCE: usize = 1 << 16;
 
 impl<'a> VolumeSearch<'a> {
+    /// A search for so many points.
     pub(super) fn new(
-        points: &'a [DVec3],
+        point_count: usize,
         cut: &'a CutFaces,
         wanted: &'a Wanted<'a>,
         tuning: &'a VoxelTuning,
     ) -> Self {
-        let elements = cut.elements();
-        let surface = Surface { points, elements, boundary_of: &cut.kind_of, sides: wanted.sides };
-        let at_points = cut.at_points(points.len());
-        Self { surface, copies: &cut.copies, at_points, wanted, tuning }
+        Self { cut, at_points: cut.at_points(point_count), wanted, tuning }
+    }
+
+    /// The elements between points, with copies behind.
+    pub(super) fn surface<'b>(&'b self, points: &'b [DVec3]) -> Surface<'b> {
+        let CutFaces { kind_of, .. } = self.cut;
+        Surface { points, elements: self.cut.elements(), boundary_of: kind_of, sides: self.wanted.sides }
     }
 
     /// Moves points within their boxes, but for some that stay, until grains have their volumes, and returns the largest error that is left, as a share of a volume.
     ///
     /// Newton's method: all points move along the slopes of the volumes, by one multiplier for each grain. What the bound of a box takes from that, the other points make
     /// up for in the next round.
-    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes, stays: &[bool]) -> f64 {
+    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes<'_>, stays: &[bool]) -> f64 {
         let mut is_held = vec![BVec3::FALSE; points.len()];
         let mut largest = f64::INFINITY;
         for _ in 0..self.tuning.volume_rounds {
             check_cancelled();
-            let missing = self.missing(points);
+            let before = self.cut.copies.with_copies(points).into_owned();
+            let missing = self.missing(&before);
             largest = missing
                 .iter()
                 .zip(self.wanted.volumes)
@@ -87,14 +85,16 @@ impl<'a> VolumeSearch<'a> {
             if largest <= TOLERANCE {
                 break;
             }
-            let slopes = self.slopes(points);
-            let is_bound = |point: usize| boxes.is_fixed[point] | is_held[point] | BVec3::splat(stays[point]);
-            let multipliers = self.multipliers(&slopes, is_bound, missing);
-            points.par_iter_mut().zip(&mut is_held).enumerate().filter(|(point, _)| !stays[*point]).for_each(
-                |(point, (place, is_held))| {
-                    let along = slopes.of(point).iter();
+            let is_bound = |point: usize| boxes.is_fixed(point) | is_held[point] | BVec3::splat(stays[point]);
+            let multipliers = self.multipliers(&before, is_bound, missing);
+            let moving = points.par_iter_mut().zip(&mut is_held).enumerate();
+            moving.filter(|(point, _)| !stays[*point]).for_each_init(
+                Slopes::default,
+                |slopes, (point, (place, is_held))| {
+                    self.find_slopes(slopes, &before, point);
+                    let along = slopes.of_grains.iter();
                     let sum: DVec3 = along.map(|(grain, slope)| *slope * multipliers[*grain as usize]).sum();
-                    let motion = sum * slopes.mobilities[point];
+                    let motion = sum * slopes.mobility;
                     let wanted = *place + motion.clamp_length_max(self.tuning.longest_motion);
                     let inside = boxes.nearest(point, wanted);
                     *place = DVec3::select(*is_held, *place, inside);
@@ -106,10 +106,10 @@ impl<'a> VolumeSearch<'a> {
         largest
     }
 
-    fn missing(&self, points: &[DVec3]) -> Vec<f64> {
-        let cones = boundary_cones(&Surface { points: &self.copies.with_copies(points), ..self.surface });
+    fn missing(&self, with_copies: &[DVec3]) -> Vec<f64> {
+        let cones = boundary_cones(&self.surface(with_copies));
         let mut sums = vec![ConeSum::default(); self.wanted.volumes.len()];
-        for (sides, cone) in self.surface.sides.iter().zip(&cones) {
+        for (sides, cone) in self.wanted.sides.iter().zip(&cones) {
             for (side, sign) in sides.iter().zip([1.0, -1.0]) {
                 if let Side::Grain(grain) = side {
                     sums[grain.index()].add(cone, sign);
@@ -119,59 +119,59 @@ impl<'a> VolumeSearch<'a> {
         self.wanted.volumes.iter().zip(sums).map(|(wanted, sum)| wanted - sum.volume).collect()
     }
 
-    fn slopes(&self, points: &[DVec3]) -> Slopes {
+    /// How volumes grow with a point, where elements are between these.
+    fn find_slopes(&self, found: &mut Slopes, with_copies: &[DVec3], point: usize) {
+        let surface = self.surface(with_copies);
         // A third of each triangle's area, and half of each segment's length, belongs to each corner.
-        let elements = self.surface.elements;
-        let share = if let Elements::Segments(_) = elements { 2.0 } else { 6.0 };
-        let with_copies = self.copies.with_copies(points);
-        let normal = |element: u32| elements.normal(&with_copies, element) / share;
-        let of_point = |point: usize| {
-            let mut slopes: Vec<(u32, DVec3)> = Vec::new();
-            let mut area = 0.0;
-            for element in self.at_points.of(point) {
-                let normal = normal(*element);
-                let sides = self.surface.sides_of(*element);
-                // Elements of copies, which alone have the outside first, are there already.
-                if sides[0] != Side::Exterior {
-                    area += normal.length();
-                }
-                for (side, sign) in sides.into_iter().zip([1.0, -1.0]) {
-                    let Side::Grain(grain) = side else { continue };
-                    match slopes.iter_mut().find(|(known, _)| *known == grain.0) {
-                        Some((_, slope)) => *slope += normal * sign,
-                        None => slopes.push((grain.0, normal * sign)),
-                    }
+        let share = if let Elements::Segments(_) = surface.elements { 2.0 } else { 6.0 };
+        found.of_grains.clear();
+        let mut area = 0.0;
+        for element in self.at_points.of(point) {
+            let normal = surface.elements.normal(with_copies, *element) / share;
+            let sides = surface.sides_of(*element);
+            // Elements of copies, which alone have the outside first, are there already.
+            if sides[0] != Side::Exterior {
+                area += normal.length();
+            }
+            for (side, sign) in sides.into_iter().zip([1.0, -1.0]) {
+                let Side::Grain(grain) = side else { continue };
+                match found.of_grains.iter_mut().find(|(known, _)| *known == grain.0) {
+                    Some((_, slope)) => *slope += normal * sign,
+                    None => found.of_grains.push((grain.0, normal * sign)),
                 }
             }
-            (slopes, if area > 0.0 { 1.0 / area } else { 0.0 })
-        };
-        let all: Vec<_> = (0..points.len()).into_par_iter().map(of_point).collect();
-        let mut slopes =
-            Slopes { starts: vec![0], of_grains: Vec::new(), mobilities: Vec::with_capacity(all.len()) };
-        for (own, mobility) in all {
-            slopes.of_grains.extend(own);
-            slopes.starts.push(slopes.of_grains.len());
-            slopes.mobilities.push(mobility);
         }
-        slopes
+        found.mobility = if area > 0.0 { 1.0 / area } else { 0.0 };
     }
 
     /// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
     fn multipliers(
         &self,
-        slopes: &Slopes,
-        is_bound: impl Fn(usize) -> BVec3,
+        with_copies: &[DVec3],
+        is_bound: impl Fn(usize) -> BVec3 + Sync,
         mut missing: Vec<f64>,
     ) -> Vec<f64> {
-        let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
-        for (point, mobility) in slopes.mobilities.iter().enumerate() {
-            let is_bound = is_bound(point);
-            for (grain, slope) in slopes.of(point) {
-                let free = DVec3::select(is_bound, DVec3::ZERO, *slope * *mobility);
-                for (other, along) in slopes.of(point) {
-                    *matrix[*grain as usize].entry(*other).or_default() += free.dot(*along);
+        let point_count = self.at_points.count();
+        let part = |first: usize| {
+            let mut part: BTreeMap<[u32; 2], f64> = BTreeMap::new();
+            let mut slopes = Slopes::default();
+            for point in first..point_count.min(first + POINTS_AT_ONCE) {
+                self.find_slopes(&mut slopes, with_copies, point);
+                let is_bound = is_bound(point);
+                for (grain, slope) in &slopes.of_grains {
+                    let free = DVec3::select(is_bound, DVec3::ZERO, *slope * slopes.mobility);
+                    for (other, along) in &slopes.of_grains {
+                        *part.entry([*grain, *other]).or_default() += free.dot(*along);
+                    }
                 }
             }
+            part
+        };
+        let firsts = (0..point_count.div_ceil(POINTS_AT_ONCE)).into_par_iter();
+        let parts: Vec<_> = firsts.map(|chunk| part(chunk * POINTS_AT_ONCE)).collect();
+        let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
+        for ([grain, other], value) in parts.into_iter().flatten() {
+            *matrix[grain as usize].entry(other).or_default() += value;
         }
         let apply = |multipliers: &[f64]| -> Vec<f64> {
             let row = |row: &BTreeMap<u32, f64>| {

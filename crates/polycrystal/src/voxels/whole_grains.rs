@@ -2,7 +2,7 @@
 
 use voronoi::Translation;
 
-use crate::voxels::labels::OUTSIDE;
+use crate::voxels::labels::{OUTSIDE, VoxelLabel};
 use crate::voxels::lattice::{Lattice, MixedPlace, Place};
 use crate::voxels::pattern::{Meeting, octants_around};
 use crate::{GrainId, NetworkError};
@@ -17,13 +17,13 @@ const FARTHEST: i8 = 60;
 /// # Errors
 /// [`NetworkError::PeriodicPores`]; [`NetworkError::EndlessGrain`] where a grain meets its own image.
 pub(super) fn whole_grains(
-    lattice: &Lattice,
+    lattice: &Lattice<'_>,
     mixed: &[Vec<MixedPlace>],
 ) -> Result<Vec<Translation>, NetworkError> {
     if lattice.periodic == [false; 3] {
         return Ok(Vec::new());
     }
-    if lattice.labels.contains(&OUTSIDE) {
+    if lattice.labels.contains(&VoxelLabel::EXTERIOR) {
         return Err(NetworkError::PeriodicPores);
     }
     let joined = joined_at_edges(lattice, mixed);
@@ -54,7 +54,7 @@ pub(super) fn whole_grains(
                         part.push((other, there));
                     }
                     Some(known) if known == there => {}
-                    _ => return Err(NetworkError::EndlessGrain { grain: GrainId(label) }),
+                    _ => return Err(NetworkError::EndlessGrain { grain: GrainId(label.0) }),
                 }
             }
         }
@@ -65,7 +65,7 @@ pub(super) fn whole_grains(
 }
 
 /// How many periods the middle of some voxels is away from the box.
-fn periods_to_middle(lattice: &Lattice, part: &[(usize, Translation)]) -> Translation {
+fn periods_to_middle(lattice: &Lattice<'_>, part: &[(usize, Translation)]) -> Translation {
     Translation(std::array::from_fn(|axis| {
         let along = |(voxel, own): &(usize, Translation)| {
             (lattice.place_of(*voxel)[axis] as f64 + 0.5) / lattice.shape[axis] as f64
@@ -79,7 +79,7 @@ fn periods_to_middle(lattice: &Lattice, part: &[(usize, Translation)]) -> Transl
 }
 
 /// The voxel so many steps on, and by how many periods it is moved there.
-fn stepped(lattice: &Lattice, place: Place, step: [isize; 3]) -> Option<(usize, Translation)> {
+fn stepped(lattice: &Lattice<'_>, place: Place, step: [isize; 3]) -> Option<(usize, Translation)> {
     let voxel = lattice.voxel(place, step)?;
     let across = |axis: usize| match place[axis].checked_add_signed(step[axis]) {
         None => -1,
@@ -89,7 +89,7 @@ fn stepped(lattice: &Lattice, place: Place, step: [isize; 3]) -> Option<(usize, 
 }
 
 /// Voxels of one grain that hang together along an edge of the lattice, from either, and by how much the second is moved as seen from the first; sorted.
-fn joined_at_edges(lattice: &Lattice, mixed: &[Vec<MixedPlace>]) -> Vec<(usize, usize, Translation)> {
+fn joined_at_edges(lattice: &Lattice<'_>, mixed: &[Vec<MixedPlace>]) -> Vec<(usize, usize, Translation)> {
     let mut joined = Vec::new();
     let volume = |label: u32| lattice.volume(label);
     let mut join = |[one, other]: [Option<(usize, Translation)>; 2]| {
@@ -104,7 +104,7 @@ fn joined_at_edges(lattice: &Lattice, mixed: &[Vec<MixedPlace>]) -> Vec<(usize, 
         let axes = if lattice.is_plane { 2..3 } else { 0..3 };
         for axis in axes {
             let around = octants_around(axis).map(in_octant);
-            let labels = around.map(|voxel| voxel.map_or(OUTSIDE, |(voxel, _)| lattice.labels[voxel]));
+            let labels = around.map(|voxel| voxel.map_or(OUTSIDE, |(voxel, _)| lattice.labels[voxel].0));
             let [a, b, c, d] = around;
             match Meeting::of(labels, &volume) {
                 Meeting::Together => {}
