@@ -64,7 +64,19 @@ impl NumberType {
 
     /// The labels that some bytes hold; a last number that is cut off is left out. Labels have 32 bits, which floating point numbers hold.
     pub(super) fn labels(self, bytes: &[u8], order: ByteOrder) -> Result<Vec<i32>, MapProblem> {
-        labels_of_floats(self.numbers(bytes, order))
+        let whole = match self {
+            Self::U8 => whole(bytes, order, u8::from_le_bytes),
+            Self::I8 => whole(bytes, order, i8::from_le_bytes),
+            Self::U16 => whole(bytes, order, u16::from_le_bytes),
+            Self::I16 => whole(bytes, order, i16::from_le_bytes),
+            Self::U32 => whole(bytes, order, u32::from_le_bytes),
+            Self::I32 => whole(bytes, order, i32::from_le_bytes),
+            Self::U64 => whole(bytes, order, u64::from_le_bytes),
+            Self::I64 => whole(bytes, order, i64::from_le_bytes),
+            Self::F32 | Self::F64 => None,
+        };
+        // Those that do not fit are found, and named, among floating point numbers.
+        whole.map_or_else(|| labels_of_floats(self.numbers(bytes, order)), Ok)
     }
 
     /// The numbers that some bytes hold; a last one that is cut off is left out.
@@ -100,6 +112,18 @@ pub(super) fn labels_of_floats(numbers: impl Iterator<Item = f64>) -> Result<Vec
         labels.push(label as i32);
     }
     Ok(labels)
+}
+
+/// Whole numbers that all fit a label.
+fn whole<const N: usize, T>(bytes: &[u8], order: ByteOrder, number: fn([u8; N]) -> T) -> Option<Vec<i32>>
+where
+    i32: TryFrom<T>,
+{
+    let mut labels = Vec::with_capacity(bytes.len() / N);
+    for number in numbers(bytes, order, number) {
+        labels.push(i32::try_from(number).ok()?);
+    }
+    Some(labels)
 }
 
 fn numbers<const N: usize, T>(

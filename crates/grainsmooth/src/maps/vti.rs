@@ -18,6 +18,13 @@ struct Candidate<'a> {
     is_of_points: bool,
 }
 
+impl Candidate<'_> {
+    /// Whether its numbers are whole ones by their type.
+    fn is_whole(&self) -> bool {
+        !matches!(self.kind, ScalarType::Float32 | ScalarType::Float64)
+    }
+}
+
 /// Reads the labels.
 pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap, MapProblem> {
     let file = XmlFile::of(source.bytes).ok_or_else(|| damaged("it is no XML of VTK"))?;
@@ -44,23 +51,22 @@ pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap,
     let shapes = [[nx, ny, nz].map(|count| count.max(1)), [nx, ny, nz].map(|count| count.saturating_add(1))];
     let candidate = labels_among(candidates(&file), options)?;
     let shape = shapes[usize::from(candidate.is_of_points)];
-    let values = file.values(candidate.array, candidate.kind);
-    let values = values.and_then(|buffer| buffer.cast_into::<f64>());
-    let values =
-        values.ok_or_else(|| damaged(format!("the numbers of its array {} are damaged", candidate.name)))?;
+    let unread = || damaged(format!("the numbers of its array {} are damaged", candidate.name));
+    let values = file.values(candidate.array, candidate.kind).ok_or_else(unread)?;
     let count = shape.iter().try_fold(1, |all: usize, count| all.checked_mul(*count));
     if count != Some(values.len()) {
         let [nx, ny, nz] = shape;
         let (name, found) = (&candidate.name, values.len());
         return Err(damaged(format!("its array {name} has {found} numbers for {nx} x {ny} x {nz} voxels")));
     }
+    let whole = if candidate.is_whole() { values.cast_into::<i32>() } else { None };
+    let labels = match whole {
+        Some(labels) => labels,
+        // Those that do not fit are found, and named, among floating point numbers.
+        None => labels_of_floats(values.cast_into::<f64>().ok_or_else(unread)?.into_iter())?,
+    };
     let lower = if candidate.is_of_points { first - 0.5 } else { first };
-    Ok(FileMap {
-        shape,
-        spacing: Some(spacing),
-        origin: Some(origin + lower * spacing),
-        labels: labels_of_floats(values.into_iter())?,
-    })
+    Ok(FileMap { shape, spacing: Some(spacing), origin: Some(origin + lower * spacing), labels })
 }
 
 /// The arrays with one number each.
@@ -93,10 +99,8 @@ fn labels_among<'a>(
             false => MapProblem::NoSuchArray { name: name.clone(), known },
         });
     }
-    let is_whole =
-        |candidate: &Candidate<'_>| !matches!(candidate.kind, ScalarType::Float32 | ScalarType::Float64);
-    if candidates.iter().any(is_whole) {
-        candidates.retain(is_whole);
+    if candidates.iter().any(Candidate::is_whole) {
+        candidates.retain(Candidate::is_whole);
     }
     let is_usual =
         |candidate: &Candidate<'_>| USUAL_NAMES.iter().any(|name| name.eq_ignore_ascii_case(&candidate.name));
