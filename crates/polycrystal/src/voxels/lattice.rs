@@ -287,7 +287,7 @@ impl<'a> Lattice<'a> {
         let labels = self.octants(place);
         let volume = |label: u32| self.volume(label);
         let here = copies(labels, &volume);
-        let alone = touching(labels, &here, &volume).map(|found| vec![found.octant]);
+        let alone = touching(labels, &here, &volume).map(|found| found.octants);
         let at_edge = |axis: usize| {
             let mut end = place;
             end[axis] += 1;
@@ -303,13 +303,16 @@ impl<'a> Lattice<'a> {
             let [one, other] = two_sheets(labels, &there, axis, 0, &volume)?;
             (one == other).then(|| octants_around(axis).to_vec())
         };
+        // At a point the first will do; another one where that changed before, which may be what another place needs.
+        let is_at_point = alone.is_some();
         let octants = alone.or_else(|| (0..3).find_map(at_edge))?;
         let candidates = octants.into_iter().filter_map(|octant| self.voxel_in(place, octant));
         let best = candidates
-            .filter_map(|voxel| {
-                // What changed before may be what another place needs.
+            .enumerate()
+            .filter_map(|(rank, voxel)| {
                 let times = self.changes.get(&voxel).copied().unwrap_or(0);
-                self.loneliness(voxel).map(|(alike, label)| (times, alike, voxel, label))
+                let rank = if is_at_point { rank.min(1) } else { 0 };
+                self.loneliness(voxel).map(|(alike, label)| (times, rank, alike, voxel, label))
             })
             .min();
         best.map(|(.., voxel, label)| Change { voxel, label })

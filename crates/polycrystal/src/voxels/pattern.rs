@@ -71,11 +71,11 @@ pub(super) struct SplitPoint {
     pub(super) count: u8,
 }
 
-/// What is wrong at a point or an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What is wrong at a point.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Touching {
-    /// One of the octants of the grain that touches itself, in its smaller part.
-    pub(super) octant: usize,
+    /// The octants of the two parts of a grain that touch each other, those of the smaller part first.
+    pub(super) octants: Vec<usize>,
 }
 
 /// The copies of a point between octants with these labels.
@@ -148,7 +148,9 @@ pub(super) fn touching(
     for one in (0..8).filter(is_part) {
         for other in (one + 1..8).filter(is_part) {
             if labels[one] == labels[other] && at[one] & at[other] != 0 {
-                return Some(Touching { octant: if sizes[other] <= sizes[one] { other } else { one } });
+                let parts = if sizes[other] <= sizes[one] { [other, one] } else { [one, other] };
+                let of_part = |part: usize| (0..8).filter(move |octant| root(&parents, *octant) == part);
+                return Some(Touching { octants: parts.into_iter().flat_map(of_part).collect() });
             }
         }
     }

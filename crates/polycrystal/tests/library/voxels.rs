@@ -341,6 +341,23 @@ proptest! {
     }
 }
 
+/// Relabelling of these ends, as in turn all voxels around a place give way: one that alone did went back and forth between two labels.
+#[test]
+fn noise_that_touches_itself_is_parted() {
+    for (edge, seed) in [(5, 33), (6, 0)] {
+        let mut state: u64 = seed;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            u32::try_from((state >> 33) % 4).expect("a small number")
+        };
+        let noise: Vec<u32> = (0..edge * edge * edge).map(|_| next()).collect();
+        let map = voxels(DVec3::ONE, [edge; 3], |[x, y, z]| Some(noise[(z * edge + y) * edge + x]));
+        let found = smoothed(&map);
+        assert!(found.relabelled > 0);
+        check(&map, &found);
+    }
+}
+
 #[test]
 fn grains_of_one_voxel_leave_other_boundaries_smooth() {
     // A slanted boundary, with single voxels of noise far from it, side by side, corner to corner and alone.
