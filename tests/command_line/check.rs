@@ -344,7 +344,7 @@ fn files_that_are_no_networks_are_refused() {
     workplace.refuses(
         "check seeds.xyz",
         FAILED,
-        "seeds.xyz: unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.json or *.csv",
+        "seeds.xyz: unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.dream3d, *.json or *.csv",
     );
     workplace.put("plain.vtk", Cubes::new().file("Other"));
     workplace.refuses(

@@ -33,6 +33,35 @@ with h5py.File("labels_nx.dream3d", "w", libver="latest") as file:
     data = geometry.create_group("Cell Data")
     data.create_dataset("FeatureIds", data=zyx, chunks=(5, 7, 9, 1), compression="gzip", shuffle=True)
 
+# Surface meshes as Quick Surface Mesh leaves them: three cubes in a row, grains 1 and 2 and one of no feature; outside -1, normals toward the first label.
+points = np.array([[x, y, z] for x in range(4) for y in range(2) for z in range(2)], dtype=np.float32)
+corner = lambda x, y, z: 4 * x + 2 * y + z
+quads, sides = [], []
+for x, (before, after) in enumerate([(-1, 1), (1, 2), (2, 0), (0, -1)]):  # normals along x
+    quads.append([corner(x, 0, 0), corner(x, 1, 0), corner(x, 1, 1), corner(x, 0, 1)])
+    sides.append([after, before])
+for x, own in enumerate([1, 2, 0]):
+    for end in range(2):  # normals outward
+        y = [corner(x, end, 0), corner(x + 1, end, 0), corner(x + 1, end, 1), corner(x, end, 1)]
+        z = [corner(x, 0, end), corner(x, 1, end), corner(x + 1, 1, end), corner(x + 1, 0, end)]
+        quads += [y if end == 0 else y[::-1], z if end == 0 else z[::-1]]
+        sides += [[-1, own]] * 2
+triangles = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
+face_labels = np.repeat(np.array(sides, dtype=np.int32), 2, axis=0)
+node_types = np.where(points[:, 0] == 1, 13, 12).astype(np.int8)
+
+with h5py.File("triangles_6.dream3d", "w", libver="earliest") as file:
+    container = file.create_group("DataContainers/TriangleDataContainer")
+    container["_SIMPL_GEOMETRY/SharedVertexList"] = points
+    container["_SIMPL_GEOMETRY/SharedTriList"] = triangles.astype(np.int64)
+    container["FaceData/FaceLabels"], container["VertexData/Node Type"] = face_labels, node_types[:, np.newaxis]
+
+with h5py.File("triangles_nx.dream3d", "w", libver="latest") as file:
+    geometry = file.create_group("DataStructure/TriangleDataContainer")
+    geometry["SharedVertexList"] = points
+    geometry.create_dataset("Shared Faces List", data=triangles.astype(np.uint64), chunks=(7, 3), compression="gzip")
+    geometry["Face Data/FaceLabels"] = face_labels
+
 # LabDCT of GrainMapper3D.
 with h5py.File("labels_dct.h5", "w") as file:
     file["LabDCT/Data/GrainId"] = zyx[..., 0]

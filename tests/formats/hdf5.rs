@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
-use grainsmooth::{EbsdOptions, MapOptions, MeasuredMap, read_map};
+use grainsmooth::polycrystal::{GrainId, certify};
+use grainsmooth::{EbsdOptions, LabelledFile, MapOptions, MeasuredMap, read_map};
 
 use crate::maps::refused_when_damaged;
 use crate::programs::run;
@@ -134,6 +135,25 @@ fn dream3d_gets_the_map_as_cleaned() {
     python.arg(script).args(["plane.dream3d", "space.dream3d"]).current_dir(folder.path());
     let Some(output) = run(test, &mut python) else { return };
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// Cubes of volume 1, numbered as features; what belongs to no feature is outside.
+#[test]
+fn surface_meshes_of_dream3d_are_networks() {
+    let Some(folder) = maps("surface_meshes_of_dream3d_are_networks") else { return };
+    for name in ["triangles_6.dream3d", "triangles_nx.dream3d"] {
+        let path = folder.path().join(name);
+        assert!(LabelledFile::is_known(&path));
+        let file = LabelledFile::read(&path).unwrap();
+        let certificate = certify(&file.surface(), &file.expected());
+        assert!(certificate.is_good(), "{name}: {}", certificate.faults);
+        assert_eq!(certificate.grain_volumes, [(GrainId(1), 1.0), (GrainId(2), 1.0)], "{name}");
+        assert_eq!((file.points.len(), file.node_types.is_some()), (12, name == "triangles_6.dream3d"));
+    }
+    let path = folder.path().join("labels_6.dream3d");
+    assert!(!LabelledFile::is_known(&path));
+    let refused = LabelledFile::read(&path).unwrap_err().to_string();
+    assert!(refused.contains("no triangle geometry"), "{refused}");
 }
 
 #[test]

@@ -95,6 +95,11 @@ pub enum MeshFileProblem {
     /// The file does not say what its cells lie between.
     #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
     NoLabels,
+    /// A file of DREAM.3D has no boundaries.
+    #[error(
+        "holds no triangle geometry with FaceLabels; make one (Quick Surface Mesh), or smooth its voxels with `grainsmooth smooth`"
+    )]
+    NoFaceLabels,
     /// A label is beyond all that can number a grain.
     #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior as -1")]
     BadLabel {
@@ -113,7 +118,7 @@ pub enum MeshFileProblem {
     },
     /// The extension names no format that can hold a network.
     #[error(
-        "unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.json or *.csv"
+        "unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.dream3d, *.json or *.csv"
     )]
     NotANetworkFormat,
     /// An edit that control points have no use for.

@@ -11,6 +11,8 @@ use toml::{Table, Value};
 use voronoi::Dimension;
 
 use super::{evolver, polygons, stl_set, tess_network};
+use crate::error::map_file::MapProblem;
+use crate::maps::hdf5;
 use crate::mesh::file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
 use crate::mesh::file::{MeshFileProblem, check_lengths};
 use crate::names::{CONFIG, CRYSTAL_SYMMETRIES, EULER_ANGLES, PERIODS, PHASE, PHASE_NAMES, SEED_ID, VOLUMES};
@@ -69,10 +71,10 @@ pub enum FileElements {
 }
 
 impl LabelledFile {
-    /// Reads a network from a .vtp, .vtu, .vtk, .tess, .fe or .dmp file, from polygons in the plane as .json or .csv, or from a .stl file or a folder of them.
+    /// Reads a network from a .vtp, .vtu, .vtk, .tess, .fe, .dmp or .dream3d file, from polygons in the plane as .json or .csv, or from a .stl file or a folder of them.
     ///
     /// Cells of a .tess file (Neper) are taken as they are, convex or not, and numbered from 0, as are polygons. Bodies of Surface Evolver (.fe, .dmp) keep their numbers. Several .stl files that are
-    /// closed are a grain each, with the last number in its name; others are boundaries between grains that they enclose.
+    /// closed are a grain each, with the last number in its name; others are boundaries between grains that they enclose. Files of DREAM.3D (.dream3d) are read by their triangle geometry; label 0 is none there.
     ///
     /// In files of VTK, the sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
     /// 0), else of `boundary_labels` or `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
@@ -96,8 +98,11 @@ impl LabelledFile {
         Self::try_read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
     }
 
-    /// Whether files of such a name are read.
+    /// Whether files of such a name are read; of DREAM.3D those that hold boundaries and no voxels.
     pub fn is_known(path: &Path) -> bool {
+        if is_dream3d(path) {
+            return std::fs::read(path).is_ok_and(|bytes| hdf5::is_network(&bytes));
+        }
         reader(path).is_some() || stl_set::is_known(path)
     }
 
@@ -277,8 +282,21 @@ fn reader(path: &Path) -> Option<Reader> {
         "fe" | "dmp" => Some(evolver::read),
         "json" => Some(polygons::read_json),
         "csv" => Some(polygons::read_csv),
+        _ if is_dream3d(path) => Some(read_dream3d),
         _ => None,
     }
+}
+
+fn is_dream3d(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("dream3d"))
+}
+
+fn read_dream3d(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
+    let found = hdf5::read_triangles(bytes).map_err(|problem| match problem {
+        MapProblem::Damaged { format, what } => MeshFileProblem::Corrupt { format, what },
+        other => MeshFileProblem::Corrupt { format: "HDF5", what: other.to_string() },
+    })?;
+    found.ok_or(MeshFileProblem::NoFaceLabels)
 }
 
 fn node_type(code: i64) -> Option<NodeType> {
