@@ -3,6 +3,7 @@
 use std::fs;
 use std::process::Command;
 
+use grainsmooth::PageDocument;
 use serde_json::Value;
 
 use crate::programs::run;
@@ -231,6 +232,17 @@ const NESTED: [[f64; 2]; 12] = [
     [2.5, 2.5],
     [1.5, 2.5],
 ];
+
+#[test]
+fn networks_of_other_programs_are_shown() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 4 -n 0 --relax 0 -o a.tess -o a.fe -o a.stl");
+    workplace.put("a.csv", "grain,x,y\n3,0,0\n3,1,0\n3,1,1\n4,0,0\n4,1,1\n4,0,1\n");
+    for name in ["a.tess", "a.fe", "a.stl", "a.csv"] {
+        let shown = PageDocument::grains(&[workplace.path(name)]);
+        assert!(shown.is_ok(), "{name}: {}", shown.err().unwrap());
+    }
+}
 
 #[test]
 fn polygons_with_holes_are_grains_in_the_plane() {

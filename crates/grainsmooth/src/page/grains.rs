@@ -21,7 +21,7 @@ pub(crate) use columns::{Column, Values, columns_of_shape};
 use columns::{columns, components};
 use plane::PlaneLines;
 pub(crate) use shown::{Frame, ShownNetwork};
-use steps::{Step, network_of, steps};
+use steps::{Step, has_extension, network_of, steps};
 
 /// Networks, of which one is shown.
 #[derive(Debug)]
@@ -142,17 +142,24 @@ impl Loaded {
         let sides: Vec<[Option<u32>; 2]> =
             file.sides.iter().map(|sides| sides.map(|side| side.grain().map(|grain| grain.0))).collect();
         let points: Vec<_> = file.points.iter().map(|point| *point * file.stretch).collect();
-        let (lines, network, mesh) = match &file.elements {
+        // What other programs' formats hold of arrays is in the network already.
+        let has_arrays = ["vtp", "vtu", "vtk"].into_iter().any(|extension| has_extension(&path, extension));
+        let (lines, network) = match &file.elements {
             FileElements::Triangles(triangles) => {
                 let boundary_of: Vec<u32> = file.boundary_of.iter().map(|boundary| boundary.0).collect();
-                (None, ShownNetwork::new(&points, triangles, &boundary_of, &sides), read_mesh(&path)?)
+                (None, ShownNetwork::new(&points, triangles, &boundary_of, &sides))
             }
             FileElements::Segments(segments) => {
                 let sides = file.boundary_of.iter().map(|boundary| sides[boundary.index()]).collect();
                 let lines = PlaneLines::new(segments, sides);
                 let network = lines.network(&points);
-                (Some(lines), network, read_polylines(&path)?)
+                (Some(lines), network)
             }
+        };
+        let mesh = match (has_arrays, &lines) {
+            (false, _) => MeshFile::default(),
+            (true, None) => read_mesh(&path)?,
+            (true, Some(_)) => read_polylines(&path)?,
         };
         let columns = columns(&file, &network);
         // The arrays; what else there is was looked at already.

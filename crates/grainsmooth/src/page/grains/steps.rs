@@ -54,6 +54,7 @@ fn files_of(path: &Path, attribute: &str) -> Result<Vec<(Option<String>, PathBuf
     if files.is_empty() { Err(Error::EmptyCollection { path: path.to_owned() }) } else { Ok(files) }
 }
 
-fn has_extension(path: &Path, wanted: &str) -> bool {
+/// Whether a file is of a format.
+pub(super) fn has_extension(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }
