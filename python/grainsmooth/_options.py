@@ -484,7 +484,7 @@ class MapOptions(TypedDict, total=False):
 
     decimate: Value
     """Collapse edges of boundaries that are shorter than H voxels, and give grains their volumes again; 0 keeps all edges, and
-    every voxel in its grain [default: 1.6; in the plane 0]
+    every voxel in its grain [default: 1.75; in the plane 0]
 
     Around small grains edges stay shorter, at most a quarter of the grain.
 

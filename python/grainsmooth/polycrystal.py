@@ -186,7 +186,7 @@ class Polycrystal:
         periodic : str, optional
             Axes along which the labels repeat, such as ``"xyz"`` or ``"x,y"``: grains are whole there.
         decimate : float, optional
-            Edges shorter than so many voxels collapse; 1.6 where it is not given, in the plane 0. With 0 every voxel stays in its grain.
+            Edges shorter than so many voxels collapse; 1.75 where it is not given, in the plane 0. With 0 every voxel stays in its grain.
         threads, progress
             As of :meth:`generate`.
 

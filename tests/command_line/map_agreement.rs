@@ -63,7 +63,7 @@ fn whole_grains_are_beside_a_map_that_repeats() {
     for name in ["exact.vtp", "decimated.vtp"] {
         let found = agreement(&workplace, &format!("{name} --labels map.vti --periodic x,y,z"));
         let differing = number(&found, "differing_voxels");
-        assert!(if name == "exact.vtp" { differing == 0.0 } else { differing < 300.0 }, "{differing}");
+        assert!(if name == "exact.vtp" { differing == 0.0 } else { differing < 400.0 }, "{differing}");
         assert!(number(&found, "largest_volume_error") < 1e-9, "{found}");
         let [mean, largest] = ["mean_distance", "largest_distance"].map(|key| number(&found, key));
         assert!(0.05 < mean && mean < 0.3 && largest < 1.2, "{mean}, {largest}");
