@@ -1,5 +1,5 @@
 //! Reference files, and how their numbering maps to ours.
-#![allow(dead_code, missing_docs, clippy::cast_possible_truncation, clippy::unwrap_used)]
+#![allow(missing_docs, clippy::cast_possible_truncation, clippy::unwrap_used)]
 
 use std::collections::HashMap;
 use std::path::Path;
