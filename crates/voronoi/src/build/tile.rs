@@ -109,6 +109,14 @@ pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&[Tile])) {
 /// An edge of a vertex, as one number: four times the vertex's, and the edge's.
 type EdgeOf = u32;
 
+/// An edge of the cell under way, with one of its ends.
+#[derive(Clone, Copy)]
+struct OpenEdge {
+    edge_of: EdgeOf,
+    /// In the order in which they come before the plane at the other end in positive orientation.
+    planes: [Generator; 2],
+}
+
 /// Of a new vertex, the edge that runs along all its generators but the seed that found it.
 const OTHERS_EDGE: EdgeOf = 0;
 
@@ -129,7 +137,7 @@ struct Builder<'a> {
     /// Of each seed, the list of vertices of which [`OTHERS_EDGE`] waits for it.
     first_waiting: Vec<u32>,
     /// Edges of the cell under way that may lack their other end.
-    current: Vec<EdgeOf>,
+    current: Vec<OpenEdge>,
     /// The one cut last.
     tile: Tile,
 }
@@ -187,30 +195,32 @@ impl<'a> Builder<'a> {
             let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
             let vertex = self.edge_tracing.vertex_of(planes)?;
             let number = self.push(seed, &vertex);
-            self.join(own, 4 * number + LAST_EDGE);
+            let [a, b, _] = vertex.planes;
+            self.join(own, 4 * number + LAST_EDGE, [b, a]);
         }
         let mut next = self.first_waiting[place];
         while next != NONE {
-            self.join(own, 4 * next + OTHERS_EDGE);
-            next = self.vertices[next as usize].next_waiting;
+            let vertex = &self.vertices[next as usize];
+            let (number, planes) = (next, vertex.edge_planes(vertex.slot(own), OTHERS_EDGE as usize));
+            next = vertex.next_waiting;
+            self.join(own, 4 * number + OTHERS_EDGE, planes);
         }
-        let ends = self.current.iter().map(|edge_of| (&self.vertices[(edge_of / 4) as usize], edge_of % 4));
+        let ends =
+            self.current.iter().map(|edge| (&self.vertices[(edge.edge_of / 4) as usize], edge.edge_of % 4));
         let open = ends.filter(|(vertex, edge)| vertex.ends[*edge as usize] == NONE);
         let radius = open.map(|(vertex, _)| self.relative_to(seed, vertex).length()).reduce(f64::max);
         if let Some(radius) = radius {
             self.edge_tracing.expect(radius)?;
-            for edge_of in &self.current {
-                let vertex = &self.vertices[(edge_of / 4) as usize];
+            for edge in &self.current {
+                let vertex = &self.vertices[(edge.edge_of / 4) as usize];
                 self.edge_tracing.suggest(vertex.planes(vertex.slot(own)));
             }
         }
-        while let Some(edge_of) = self.current.pop() {
+        while let Some(OpenEdge { edge_of, planes }) = self.current.pop() {
             let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
             if vertex.ends[edge] == NONE {
-                let slot = vertex.slot(own);
-                let start = self.relative_to(seed, vertex);
-                let (along, used) = (vertex.edge_planes(slot, edge), vertex.planes(slot));
-                let found = self.edge_tracing.other_end(along, used, start)?;
+                let (start, last) = (self.relative_to(seed, vertex), vertex.generators[edge]);
+                let found = self.edge_tracing.other_end(planes, last, start)?;
                 let number = self.push(seed, &found);
                 // What the two vertices share comes first in the new one.
                 self.link(own, 4 * number + LAST_EDGE, edge_of);
@@ -272,21 +282,19 @@ impl<'a> Builder<'a> {
             has_tie: found.has_tie,
             done_faces: 0,
         });
-        self.join(own, 4 * number + 1);
-        self.join(own, 4 * number + 2);
+        self.join(own, 4 * number + 1, [c, b]);
+        self.join(own, 4 * number + 2, [a, c]);
         number
     }
 
-    /// Joins a vertex to the one at the other end of an edge of the cell under way, once both are known.
-    fn join(&mut self, own: Generator, edge_of: EdgeOf) {
-        let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
-        let planes = vertex.edge_planes(vertex.slot(own), edge);
+    /// Joins a vertex to the one at the other end of an edge of the cell under way, along two planes, once both are known.
+    fn join(&mut self, own: Generator, edge_of: EdgeOf, planes: [Generator; 2]) {
         if self.is_flat && !planes.contains(&Generator::side(PLANE)) {
             return;
         }
         match self.edges.add(planes, edge_of) {
             Some(other) => self.link(own, edge_of, other),
-            None => self.current.push(edge_of),
+            None => self.current.push(OpenEdge { edge_of, planes }),
         }
     }
 

@@ -129,17 +129,20 @@ impl Tile {
     ) -> (FaceMeasure, DVec3) {
         let input = search.input();
         let seed = input.seeds[own.0 as usize];
-        let place =
-            |vertex: &TileVertex| vertex.position + (input.seeds[vertex.generators[0].0 as usize] - seed);
         let normal = match beyond.as_site() {
             Some(site) => input.difference(own.0, site),
             None => HalfSpace::new(own.0, beyond, input).normal,
         };
-        let mut polygon = Polygon::from(place(&vertices[first as usize]), normal);
-        for_each_corner(vertices, first, own, beyond, |number, vertex, _, _| {
-            self.corners.push(number);
-            polygon.go_to(place(vertex));
-        });
+        let before = self.corners.len();
+        for_each_corner(vertices, first, own, beyond, |number, _, _, _| self.corners.push(number));
+        // Measured afterwards: each corner tells where the next one is, and nothing else should wait for that.
+        let place = |number: &u32| {
+            let vertex = &vertices[*number as usize];
+            vertex.position + (input.seeds[vertex.generators[0].0 as usize] - seed)
+        };
+        let mut corners = self.corners[before..].iter().map(place);
+        let mut polygon = Polygon::from(corners.next().unwrap_or_default(), normal);
+        corners.for_each(|corner| polygon.go_to(corner));
         let corner_count = self.finish_face([own, beyond]);
         (polygon.measure(corner_count), normal)
     }
@@ -219,13 +222,16 @@ fn for_each_corner(
     mut visit: impl FnMut(u32, &TileVertex, Generator, u32),
 ) {
     let mut at = first;
+    let (cell, plane) = (vertices[at as usize].slot(own), vertices[at as usize].slot(other));
+    let mut beyond = vertices[at as usize].generators[TileVertex::slot_before(cell, plane)];
     loop {
         let vertex = &mut vertices[at as usize];
-        let (cell, plane) = (vertex.slot(own), vertex.slot(other));
-        vertex.mark_done(cell, plane);
-        let (edge, beyond) = TileVertex::next_edge(cell, plane);
-        let next = vertex.ends[edge];
-        visit(at, vertex, vertex.generators[beyond], next);
+        // The next edge leaves the plane that the last one ran along, beside the face, for the vertex's fourth generator.
+        let before = vertex.slot(beyond);
+        let next = vertex.ends[before];
+        beyond = vertex.fourth([own, other, beyond]);
+        vertex.mark_done_beside(before, vertex.slot(beyond));
+        visit(at, vertex, beyond, next);
         if next == first {
             return;
         }

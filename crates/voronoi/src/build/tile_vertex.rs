@@ -58,6 +58,9 @@ pub(crate) const FACES_OF_FIRST: u8 = 0b111;
 /// The bit of the face of each two slots.
 const FACE_BIT: [[u8; 4]; 4] = [[0, 1, 2, 4], [1, 0, 8, 16], [2, 8, 0, 32], [4, 16, 32, 0]];
 
+/// The same of the two slots that are not given.
+const FACE_BIT_BESIDE: [[u8; 4]; 4] = [[0, 32, 16, 8], [32, 0, 4, 2], [16, 4, 0, 1], [8, 2, 1, 0]];
+
 impl TileVertex {
     /// The slot of a generator of the vertex.
     #[inline]
@@ -83,12 +86,18 @@ impl TileVertex {
         [self.generators[to], self.generators[from]]
     }
 
-    /// The edge from this vertex to the next one, counter-clockwise as seen from outside the cell in slot `cell`, of that
-    /// cell's face with the generator in slot `other`; and the slot of what lies beyond the edge in the face's plane.
+    /// The slot of what lies beyond the edge to this vertex, counter-clockwise as seen from outside the cell in slot `cell`, of that
+    /// cell's face with the generator in slot `other`.
     #[inline]
-    pub(crate) fn next_edge(cell: usize, other: usize) -> (usize, usize) {
-        let edge = successor(cell, other);
-        (edge, successor(cell, edge))
+    pub(crate) fn slot_before(cell: usize, other: usize) -> usize {
+        successor(cell, other)
+    }
+
+    /// The generator of the vertex that is none of three.
+    #[inline]
+    pub(crate) fn fourth(&self, others: [Generator; 3]) -> Generator {
+        let all = self.generators.iter().chain(&others);
+        Generator(all.fold(0, |code, generator| code ^ generator.0))
     }
 
     #[inline]
@@ -99,5 +108,11 @@ impl TileVertex {
     #[inline]
     pub(crate) fn mark_done(&mut self, i: usize, j: usize) {
         self.done_faces |= FACE_BIT[i][j];
+    }
+
+    /// Marks the face between the generators in the other two slots as done.
+    #[inline]
+    pub(crate) fn mark_done_beside(&mut self, k: usize, l: usize) {
+        self.done_faces |= FACE_BIT_BESIDE[k][l];
     }
 }

@@ -113,16 +113,17 @@ impl<'a> EdgeTracing<'a> {
         self.candidates.fill_lanes();
     }
 
-    /// The other end of an edge from a vertex with the planes `used` at `start`. The edge runs along two of these, which are in
+    /// The other end of an edge from a vertex at `start`, where a third plane cuts it. The edge runs along two planes, which are in
     /// positive orientation with the one at the other end.
     pub(crate) fn other_end(
         &mut self,
-        edge: [Generator; 2],
-        used: [Generator; 3],
+        planes: [Generator; 2],
+        third: Generator,
         start: DVec3,
     ) -> Result<NewVertex, ImagesMissing> {
         self.gather(start.length())?;
-        let edge = self.half_spaces(edge);
+        let used = [planes[0], planes[1], third];
+        let edge = self.half_spaces(planes);
         let direction = edge[0].normal.cross(edge[1].normal);
         let mut end: Option<(Generator, Intersection, f32)> = None;
         loop {
