@@ -48,9 +48,10 @@ pub(crate) fn restore_by<Points>(
         }
         least = error;
         if is_sum_fixed {
-            // What rounding leaves of the sum has no answer.
-            let rest = missing.iter().sum::<f64>() / missing.len() as f64;
-            missing.iter_mut().for_each(|missing| *missing -= rest);
+            // What rounding leaves of the sum has no answer. No motion changes what has vanished.
+            let left: Vec<usize> = (0..wanted.len()).filter(|grain| wanted[*grain] > 0.0).collect();
+            let rest = left.iter().map(|grain| missing[*grain]).sum::<f64>() / left.len() as f64;
+            left.iter().for_each(|grain| missing[*grain] -= rest);
         }
         let motions = least_motion(&moving(points), &missing);
         move_by(points, motions);
