@@ -1,8 +1,9 @@
 //! `--series` and `--free`.
 
+use std::collections::BTreeSet;
 use std::fs;
 
-use crate::surface_file::SurfaceFile;
+use crate::surface_file::{SurfaceFile, integers};
 use crate::workplace::{FAILED, USAGE, Workplace};
 
 /// The times and files of a collection.
@@ -84,6 +85,16 @@ fn free_grains_change_their_sizes_and_fill_the_box() {
     let [free, kept] = ["free.json", "kept.json"].map(areas);
     assert!((free.iter().sum::<f64>() - 1.0).abs() < 1e-12);
     assert!(free.iter().zip(&kept).any(|(free, kept)| (free / kept - 1.0).abs() > 1e-3));
+}
+
+/// Blocks of grains that have no surface any more were written too: failure 20261130:15 of the campaign with at most 40 grains.
+#[test]
+fn blocks_leave_out_grains_that_vanished() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 20 --seeding random --rng-seed 1 -n 1 --free -o a.vtm");
+    assert!(said.contains("vanished    2 of 20 grains"), "{said}");
+    let ids: BTreeSet<i32> = integers(&workplace.path("a/grains.vtp"), "GrainId").into_iter().collect();
+    assert_eq!(ids.len(), 18);
 }
 
 /// Grains that are left keep their numbers, whatever becomes of others.

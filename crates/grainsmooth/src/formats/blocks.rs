@@ -160,34 +160,36 @@ impl Polycrystal {
         let names = self.file().names;
         let parts = surface.parts_of_grains(self.network.grain_count());
         let id = |number: usize| GrainId(point_id(number));
+        // What has vanished has no surface.
+        let left: Vec<usize> = (0..parts.len()).filter(|number| !parts[*number].is_empty()).collect();
         // Grains are made anew for each array: all at once they take more memory than the network.
-        let grain = |number: usize| surface.grain(id(number), &parts[number]);
-        let found = (0..parts.len()).into_par_iter().map(|number| {
-            let grain = grain(number);
+        let grain = |piece: usize| surface.grain(id(left[piece]), &parts[left[piece]]);
+        let found = (0..left.len()).into_par_iter().map(|piece| {
+            let grain = grain(piece);
             let size = PieceSize { points: grain.points.len(), triangles: grain.triangle_count() };
             (size, GrainMeasure::of(&grain))
         });
         let (sizes, measures): (Vec<PieceSize>, Vec<GrainMeasure>) = found.unzip();
-        let seed = |number: usize| self.grains().ids[number].cast_signed();
-        let numbers: Vec<usize> = (0..parts.len()).collect();
-        let of_grains = measured.map_or_else(Vec::new, |all| all.of_grains(&numbers));
+        let seed = |piece: usize| self.grains().ids[left[piece]].cast_signed();
+        let of_grains = measured.map_or_else(Vec::new, |all| all.of_grains(&left));
         let tuples = self.grain_tuples();
         let mut data = PieceData {
             sizes: &sizes,
-            points: &|number| grain(number).points.into_owned(),
-            triangles: &|number| grain(number).triangles().collect(),
+            points: &|piece| grain(piece).points.into_owned(),
+            triangles: &|piece| grain(piece).triangles().collect(),
             point_arrays: Vec::new(),
             cell_arrays: vec![
-                PieceValues::each(names.grain(), |number| names.number(id(number))),
+                PieceValues::each(names.grain(), |piece| names.number(id(left[piece]))),
                 PieceValues::each(SEED_ID, seed),
-                PieceValues::each("Volume", |number| measures[number].volume),
-                PieceValues::each("Area", |number| measures[number].area),
-                PieceValues::each("Neighbors", |number| measures[number].neighbors),
-                PieceValues::each("Sphericity", |number| measures[number].sphericity),
+                PieceValues::each("Volume", |piece| measures[piece].volume),
+                PieceValues::each("Area", |piece| measures[piece].area),
+                PieceValues::each("Neighbors", |piece| measures[piece].neighbors),
+                PieceValues::each("Sphericity", |piece| measures[piece].sphericity),
             ],
             field: self.field(),
         };
-        data.cell_arrays.extend(tuples.iter().map(|tuples| PieceValues::of_items(tuples, Some)));
+        let tuple = |piece: usize| Some(left[piece]);
+        data.cell_arrays.extend(tuples.iter().map(|tuples| PieceValues::of_items(tuples, tuple)));
         data.cell_arrays.extend(of_grains.iter().map(PieceValues::of_data));
         write_pieces(&data, self.file().encoding, out)
     }
