@@ -276,6 +276,14 @@ class Options(TypedDict, total=False):
 
     Example of the command line: ``--elements-per-grain 5 --size-growth 0.2``"""
 
+    small_features: Literal["keep", "merge"]
+    """Keep triple lines that are shorter than the elements, with smaller elements around them (keep), or turn them into points
+    where every grain stays a closed ball (merge)
+
+    Example of the command line: ``--elements-per-grain 3 --small-features merge``
+
+    Default: ``keep``"""
+
     texture: Value
     """Give each grain an orientation: random, components with halfwidths in degrees, or a file
 

@@ -30,6 +30,45 @@ fn elements_have_the_size_asked_for_and_the_result_is_good() {
     }
 }
 
+/// Grains that have vanished were given a share of what rounding leaves of all volumes, and those of the others could not be restored: failure 20261130:15 of the campaign, in the plane.
+#[test]
+fn grains_that_vanish_leave_the_volumes_of_others_exact() {
+    let workplace = Workplace::new();
+    let said = workplace.run(
+        "--dim 2 --seeds 30 --seeding random --rng-seed 3 --free -n 1 --elements-per-grain 2 -o a.vtp --json-summary a.json",
+    );
+    assert!(said.contains("vanished "), "{said}");
+    let record: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+    assert!(record["largest_relative_volume_error"].as_f64().unwrap() < 1e-12, "{record}");
+}
+
+#[test]
+fn short_lines_become_points_where_asked_and_are_named() {
+    let workplace = Workplace::new();
+    for (options, noun) in [("-n 2", "triangles"), ("--dim 2", "segments")] {
+        let options =
+            format!("--seeds 25 --seeding random {options} --elements-per-grain 1.5 --json-summary a.json");
+        let count = |said: &str| {
+            let end = said.find(noun).expect(noun);
+            let start = said[..end].trim_end().rfind(' ').unwrap();
+            said[start..end].trim().parse::<usize>().unwrap()
+        };
+        let kept = workplace.run(&format!("{options} -o a.vtp"));
+        let said = workplace.run(&format!("{options} --small-features merge -o b.vtp"));
+        assert!(said.contains("\nmerged      ") && !kept.contains("\nmerged "), "{said}");
+        assert!(count(&said) < count(&kept), "{said}");
+        let record: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let merged = record["element_size"]["merged_lines"].as_array().unwrap();
+        assert!(!merged.is_empty());
+        assert!(merged.iter().all(|line| line["grains"].as_array().unwrap().len() >= 3), "{merged:?}");
+        workplace.command("check a.vtp b.vtp").assert().success();
+        let config = embedded_config(&workplace.path("b.vtp")).unwrap().unwrap();
+        assert!(config.contains("small-features = \"merge\""), "{config}");
+    }
+    workplace.run("remesh b.vtp --elements-per-grain 1.2 --small-features merge -o c.vtp");
+    workplace.command("check c.vtp").assert().success();
+}
+
 #[test]
 fn settings_tell_the_size() {
     let workplace = Workplace::new();
@@ -122,6 +161,11 @@ fn sizes_that_cannot_be_had_are_refused() {
         "--seeds 3 --size-growth 0.3",
         USAGE,
         "--size-growth changes sizes of elements; give --elements-per-grain or --element-size as well",
+    );
+    workplace.refuses(
+        "--seeds 3 --small-features merge",
+        USAGE,
+        "--small-features changes sizes of elements; give --elements-per-grain or --element-size as well",
     );
     workplace.refuses(
         "--seeds 3 --element-size 0",

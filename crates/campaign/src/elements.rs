@@ -46,6 +46,9 @@ pub fn draw(draw: &mut Draw, domain: &Domain, count: u32, case: &mut Case) {
     if draw.chance(FILLED) {
         fill(draw, domain, case);
     }
+    if draw.chance(0.15) {
+        case.options.set("small-features", ["merge"]);
+    }
 }
 
 /// Draws a file of elements that fill grains, and what solvers need in it.

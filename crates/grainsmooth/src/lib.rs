@@ -57,7 +57,7 @@ pub use check::report::{
 };
 pub use check::volume::{ElementQuality, VolumeReport};
 pub use config::check::ConfigError;
-pub use config::elements::ElementOptions;
+pub use config::elements::{ElementOptions, SmallFeatures};
 pub use config::files::{FileOptions, StlEncoding};
 pub use config::gradient::GradientSource;
 pub use config::inside::{InsideError, InsideOptions, InsidePattern};
@@ -128,7 +128,7 @@ pub use names::Names;
 pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, SceneColors, SceneNumbers, ScenePicture, Shading, Slice};
 pub use report::{Html, SceneReport};
-pub use run::elements_reached::ElementsReached;
+pub use run::elements_reached::{ElementsReached, LineMerged};
 pub use run::fitted_cells::CellFit;
 pub use run::listed::{ListedCells, list_cells};
 pub use run::measured::{MapRun, smooth_map};

@@ -18,8 +18,9 @@ use crate::figures::counted::Counted;
 use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, FilledPlane, ListedCells, Polycrystal, Reconnected, Regularization,
-    SeedSource, ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
+    Config, EquivalentDiameters, FilledPlane, LineMerged, ListedCells, Polycrystal, Reconnected,
+    Regularization, SeedSource, ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles,
+    VolumeMesh,
 };
 use measured::{write_crystals, write_map};
 
@@ -86,7 +87,10 @@ impl fmt::Display for Summary<'_> {
                 writeln!(out, "mesh        {points} points, {elements} {element}s")?
             }
             None => writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?,
-            Some(reached) => writeln!(out, "mesh        {points} points, {elements} {element}s; {reached}")?,
+            Some(reached) => {
+                writeln!(out, "mesh        {points} points, {elements} {element}s; {reached}")?;
+                write_merged_lines(out, &reached.merged_lines)?;
+            }
         }
         if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
             writeln!(out, "tetrahedra  {quality}")?;
@@ -150,6 +154,25 @@ impl fmt::Display for Summary<'_> {
 }
 
 /// What became of short edges of the cells.
+/// Most lines that became points which the summary names one by one; all are in the JSON summary.
+const NAMED: usize = 5;
+
+/// Says which lines became points.
+fn write_merged_lines(out: &mut fmt::Formatter<'_>, merged: &[LineMerged]) -> fmt::Result {
+    if merged.is_empty() {
+        return Ok(());
+    }
+    match merged.len() {
+        1 => writeln!(out, "merged      1 short line became a point:")?,
+        count => writeln!(out, "merged      {count} short lines became points, the shortest first:")?,
+    }
+    merged.iter().take(NAMED).try_for_each(|line| writeln!(out, "            {line}"))?;
+    match merged.len().saturating_sub(NAMED) {
+        0 => Ok(()),
+        more => writeln!(out, "            and {more} more, named by --json-summary"),
+    }
+}
+
 fn write_regularization(out: &mut fmt::Formatter<'_>, synthesis: &Synthesis) -> fmt::Result {
     let Collapsed { edges, faces } = synthesis.collapsed;
     if edges > 0 {

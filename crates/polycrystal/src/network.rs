@@ -9,6 +9,7 @@ pub(crate) mod grain_mesh;
 pub(crate) mod junctions;
 pub(crate) mod labelled_mesh;
 pub(crate) mod line_coarsening;
+pub(crate) mod merged;
 pub(crate) mod periodic_grains;
 pub(crate) mod tension;
 

@@ -15,6 +15,7 @@ mod patch;
 mod plane;
 mod reference;
 mod shaping;
+mod short_lines;
 mod size_field;
 mod skeleton;
 mod torus;
@@ -28,7 +29,7 @@ use rayon::prelude::*;
 use voronoi::{Dimension, Translation};
 
 use crate::mesh::id::id;
-use crate::{Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
+use crate::{BoundaryId, Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
 use assembled::{Assembled, NewBoundary, assemble};
 use joints::separate_joints;
 use lines::{DividedLine, divide_lines};
@@ -36,6 +37,8 @@ pub use middles::EdgeMiddles;
 use outline::{Numbering, Outlined, is_loop};
 use parts::Parts;
 pub use plane::PlaneMesh;
+pub use short_lines::MergedLine;
+use short_lines::ShortLines;
 use size_field::{Halved, SizeField, Surroundings};
 use skeleton::Skeleton;
 use torus::{Moved, Torus};
@@ -52,6 +55,8 @@ pub struct ElementSize {
     pub of_radius: Option<f64>,
     /// Whether edges get points in their middle, for elements of second order.
     pub has_middles: bool,
+    /// Whether lines shorter than the elements become points, where every grain stays a closed ball.
+    pub merges_short_lines: bool,
 }
 
 impl ElementSize {
@@ -60,7 +65,7 @@ impl ElementSize {
 
     /// Edges of one length.
     pub fn new(length: f64) -> Self {
-        Self { length, growth: Self::GROWTH, of_radius: None, has_middles: false }
+        Self { length, growth: Self::GROWTH, of_radius: None, has_middles: false, merges_short_lines: false }
     }
 }
 
@@ -75,6 +80,8 @@ pub struct Remeshed {
     pub certificate: Certificate,
     /// How often elements became smaller somewhere, because what came out was invalid there.
     pub refinements: usize,
+    /// Lines that became points, where that is asked for, the shortest first.
+    pub merged: Vec<MergedLine>,
     /// The middles of edges, where these are asked for. They lie on the smooth surface, and volumes are restored by [`EdgeMiddles::restore_volumes`].
     pub middles: Option<EdgeMiddles>,
     /// In the plane, the triangles that fill the grains.
@@ -84,7 +91,7 @@ pub struct Remeshed {
 impl Network {
     /// The network with triangles of the size asked for, for the points of its finest level.
     ///
-    /// New points lie on the coarsest level whose edges, between points of the finest, have no more than 0.4 of that size on the mean, or where nothing valid comes out there, on the finest. That should have such edges: with longer
+    /// New points lie on the coarsest level whose edges, between points of the finest, have no more than 0.4 of that size on the mean. The finest should: with longer
     /// edges tetrahedra between the triangles get worse.
     ///
     /// Boundaries, triple lines and quadruple points stay what they are; elements are smaller where lines are short. Grains keep the volumes of their cells. Copies are
@@ -138,17 +145,10 @@ impl Network {
             }
         }
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
-        let remeshed_on = |level: &Level| match self.domain().dimension() {
+        let level = &*self.reference_level(points, size.length, tuning);
+        match self.domain().dimension() {
             Dimension::Two => plane::remeshed(self, level, points, size, cut, tuning),
             Dimension::Three => self.remeshed_on(level, points, size, cut, tuning),
-        };
-        let level = self.reference_level(points, size.length, tuning);
-        match remeshed_on(&level) {
-            // A level through some points of the finest may be folded where that is not.
-            Err(NetworkError::RemeshInvalid(_)) if level.vertex_count() < points.len() => {
-                remeshed_on(&self.finest_level())
-            }
-            remeshed => remeshed,
         }
     }
 
@@ -167,7 +167,9 @@ impl Network {
         let torus = Torus::new(self, level, points, cut)?;
         let skeleton = Skeleton::new((level, mesh), self.wall_sets(), &torus, |_| false);
         let parts = Parts::new((level, mesh), &skeleton, &torus, self.boundaries())?;
-        let around = Surroundings {
+        let sides = |boundary: BoundaryId| self.boundaries()[boundary.index()].sides;
+        let mut around = Surroundings {
+            short: ShortLines::default(),
             level,
             mesh,
             points,
@@ -177,8 +179,11 @@ impl Network {
             is_plane: false,
         };
         until_valid(size, tuning, |halved, refinements| {
+            if size.merges_short_lines {
+                around.short = ShortLines::new(self, &around, sides, tuning.short_line * size.length, halved);
+            }
             let sizes = SizeField::new(&around, size, halved, tuning);
-            let lines = divide_lines(&skeleton.lines, around.points, &sizes, &torus);
+            let lines = divide_lines(&around, &sizes);
             let numbering = Numbering::new(&around, &lines);
             let assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
             let (network, points) = (&assembled.network, assembled.points());
@@ -188,7 +193,8 @@ impl Network {
             };
             let middles = size.has_middles.then(|| EdgeMiddles::new(&assembled, &around, &lines, &numbering));
             let network = assembled.network;
-            Ok(Ok(Remeshed { network, points, certificate, refinements, middles, triangles: None }))
+            let merged = around.short.merged.clone();
+            Ok(Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles: None }))
         })
     }
 
@@ -321,7 +327,8 @@ fn shaped_parts(
 
 /// Where nodes and the points of lines are.
 fn positions_on_lines(around: &Surroundings<'_>, lines: &[DividedLine], numbering: &Numbering) -> Vec<DVec3> {
-    let mut positions: Vec<DVec3> = numbering.nodes().map(|node| around.points[node as usize]).collect();
+    let place = |node: u32| around.short.place(node).unwrap_or(around.points[node as usize]);
+    let mut positions: Vec<DVec3> = numbering.nodes().map(place).collect();
     for (line, divided) in around.skeleton.lines.iter().zip(lines) {
         positions.extend(&divided.points);
         if is_loop(line.vertices[0], line.is_closed(), around) {

@@ -374,7 +374,7 @@ fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -
     }
     let file = FileOptions { volume: *volume, ..FileOptions::default() };
     let elements = ElementOptions {
-        element_size: polycrystal.elements.map(|elements| elements.size),
+        element_size: polycrystal.elements.as_ref().map(|elements| elements.size),
         ..ElementOptions::default()
     };
     let dimension = polycrystal.dimension();

@@ -7,6 +7,7 @@ use polycrystal::{Relaxation, Volumes};
 use texture::SampleSymmetry;
 use voronoi::Dimension;
 
+use super::elements::SmallFeatures;
 use super::inside::{InsideError, InsideOptions, InsidePattern};
 use super::laws::{LawError, LawKind, LawOptions, LawProblem, LawSource};
 use super::phases::{PhaseOptions, PhasesError};
@@ -161,8 +162,12 @@ impl Config {
         if elements.are_asked() {
             return Ok(());
         }
-        let changes = [("adapt-curvature", elements.adapt_curvature), ("size-growth", elements.size_growth)];
-        match changes.into_iter().find(|(_, value)| value.is_some()) {
+        let changes = [
+            ("adapt-curvature", elements.adapt_curvature.is_some()),
+            ("size-growth", elements.size_growth.is_some()),
+            ("small-features", elements.small_features != SmallFeatures::default()),
+        ];
+        match changes.into_iter().find(|(_, is_given)| *is_given) {
             Some((name, _)) => Err(ConfigError::ElementsWithoutSize(name)),
             None => Ok(()),
         }

@@ -1,9 +1,9 @@
 //! What is asked of the triangles on boundaries.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::spelling::{length, number};
+use super::spelling::{is_usual, length, number};
 
 /// What is asked of the triangles on boundaries, as finite elements need them.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Args, Serialize)]
@@ -38,6 +38,25 @@ pub struct ElementOptions {
     #[arg(long, value_name = "G", value_parser = number(0.01..=10.0, "give a growth from 0.01 to 10"), allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_growth: Option<f64>,
+
+    /// Keep triple lines that are shorter than the elements, with smaller elements around them (keep), or turn them into points
+    /// where every grain stays a closed ball (merge)
+    ///
+    /// Example: --elements-per-grain 3 --small-features merge
+    #[arg(long, value_name = "RULE", value_enum, default_value_t)]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub small_features: SmallFeatures,
+}
+
+/// What becomes of lines shorter than the elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SmallFeatures {
+    /// They stay, with smaller elements around.
+    #[default]
+    Keep,
+    /// They become points.
+    Merge,
 }
 
 impl ElementOptions {

@@ -5,11 +5,11 @@ use std::time::Instant;
 use polycrystal::{ElementSize, Remeshed};
 use voronoi::Dimension;
 
-use super::elements_reached::ElementsReached;
+use super::elements_reached::{ElementsReached, LineMerged};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use crate::volume_mesh::filled_plane::FilledPlane;
-use crate::{ElementOptions, Error};
+use crate::{ElementOptions, Error, SmallFeatures};
 
 /// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
 /// bad tetrahedra as with 0.4.
@@ -63,17 +63,21 @@ impl Polycrystal {
         }
         let growth = options.size_growth.unwrap_or(ElementSize::GROWTH);
         let has_middles = self.file().volume.order == Some(2);
-        let size = ElementSize { length, growth, of_radius: options.adapt_curvature, has_middles };
+        let merges_short_lines = options.small_features == SmallFeatures::Merge;
+        let of_radius = options.adapt_curvature;
+        let size = ElementSize { length, growth, of_radius, has_middles, merges_short_lines };
         let cut = self.axes_cut_at_box();
         match self.network.remeshed(&self.points, &size, cut) {
-            Ok(Remeshed { network, points, certificate, refinements, middles, triangles }) => {
+            Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles }) => {
                 let mean_edge = network.mean_edge_length(&points);
                 self.plane_mesh = match (triangles, &middles) {
                     (Some(mesh), Some(middles)) => Some(FilledPlane::curved(mesh, &network, middles.clone())),
                     (Some(mesh), None) => Some(FilledPlane { mesh, curved: None }),
                     (None, _) => None,
                 };
-                self.elements = Some(ElementsReached { size: length, mean_edge, refinements });
+                let names = self.file().names;
+                let merged_lines = merged.iter().map(|line| LineMerged::new(line, names)).collect();
+                self.elements = Some(ElementsReached { size: length, mean_edge, refinements, merged_lines });
                 // Angles stay those of the smooth boundaries, as they were before they were stretched.
                 self.validation.triangles = certificate.triangles;
                 self.validation.largest_volume_error = certificate.largest_volume_error;

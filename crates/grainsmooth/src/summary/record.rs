@@ -248,7 +248,7 @@ impl SummaryRecord {
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: polycrystal.level(),
-            element_size: polycrystal.elements,
+            element_size: polycrystal.elements.clone(),
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
             filled: polycrystal.plane_mesh.as_ref().and_then(FilledPlane::quality),
             curved_edges: polycrystal.curved_edges(),

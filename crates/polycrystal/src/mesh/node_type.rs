@@ -38,6 +38,11 @@ impl NodeType {
         self.0 % 10
     }
 
+    /// Whether a point lies on the domain's outer surface.
+    pub(crate) fn is_outer(self) -> bool {
+        self.0 >= 10
+    }
+
     /// The type of a code, if it is one: 2 to 4 or 12 to 14.
     pub fn of_code(code: i8) -> Option<Self> {
         matches!(code, 2..=4 | 12..=14).then_some(Self(code))

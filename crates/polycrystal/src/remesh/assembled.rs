@@ -12,6 +12,7 @@ use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
 use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
+use crate::remesh::short_lines::meetings_at;
 use crate::remesh::size_field::Surroundings;
 use crate::remesh::torus::Moved;
 use crate::{Level, Mesh, Network, NetworkError, WallSet};
@@ -28,6 +29,17 @@ struct At {
     node_type: crate::NodeType,
     grains: u8,
     walls: WallSet,
+}
+
+impl At {
+    fn of(level: &Level, vertex: u32) -> Self {
+        let vertex = vertex as usize;
+        Self {
+            node_type: level.node_types[vertex],
+            grains: level.grain_counts[vertex],
+            walls: level.walls[vertex],
+        }
+    }
 }
 
 /// A network of one level, its points, and the original of each.
@@ -94,19 +106,29 @@ pub(crate) fn assemble(
             creases.push(Crease::infinite([ends[0], ends[1]]));
             at_lines.insert([ends[0].min(ends[1]), ends[0].max(ends[1])], meeting);
         }
-        let inner = At { node_type: meeting.node_type, grains: meeting.grains, walls: occurrence.walls };
-        along[1..along.len() - 1].iter().for_each(|point| at[*point as usize] = Some(inner));
+        if along.len() > 2 {
+            let inner = At { node_type: meeting.node_type, grains: meeting.grains, walls: occurrence.walls };
+            along[1..along.len() - 1].iter().for_each(|point| at[*point as usize] = Some(inner));
+        }
         for (point, vertex) in [
             (along[0], occurrence.vertices[0]),
             (along[along.len() - 1], occurrence.vertices[occurrence.vertices.len() - 1]),
         ] {
-            let vertex = vertex as usize;
-            let level = around.level;
-            at[point as usize] = Some(At {
-                node_type: level.node_types[vertex],
-                grains: level.grain_counts[vertex],
-                walls: level.walls[vertex],
-            });
+            let original = around.torus.vertices[vertex as usize].original;
+            if around.short.is_gone(original) {
+                at[point as usize].get_or_insert(At::of(around.level, around.node(vertex).original));
+            } else {
+                at[point as usize] = Some(At::of(around.level, vertex));
+            }
+        }
+    }
+    let corners = of_part
+        .iter()
+        .zip(&parts.boundaries)
+        .flat_map(|(of, boundary)| of.iter().flatten().map(|corner| (*corner, *boundary)));
+    for (point, meeting) in meetings_at(&numbering.merged(&around.short), network, corners) {
+        if let Some(at) = &mut at[number(point) as usize] {
+            (at.node_type, at.grains) = (meeting.node_type, meeting.grains);
         }
     }
     for (of, boundary) in of_part.iter().zip(&parts.boundaries) {
@@ -156,7 +178,8 @@ pub(crate) fn assemble(
     };
     let originals =
         (0..id(count)).map(|original| Moved { original, translation: Translation::ZERO }).chain(copies);
-    Ok(Assembled { originals: originals.collect(), network: network.with_level(level), positions })
+    let network = network.with_level(level).with_merged_lines(&around.short.sides);
+    Ok(Assembled { originals: originals.collect(), network, positions })
 }
 
 impl Assembled {

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::Translation;
 
 use crate::mesh::id::id;
 use crate::remesh::gradation::{Gradation, GradedEdge};
-use crate::remesh::size_field::SizeField;
+use crate::remesh::size_field::{SizeField, Surroundings};
 use crate::remesh::skeleton::Line;
-use crate::remesh::torus::{Moved, Torus};
+use crate::remesh::torus::Moved;
 
 /// Fewest segments of a line that comes back to where it starts.
 const OF_LOOP: usize = 3;
@@ -18,7 +17,7 @@ const OF_LOOP: usize = 3;
 const STEPS_OF_SEGMENT: usize = 2;
 
 /// The points of a line, old and new.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DividedLine {
     /// Parts that each step of the smooth line is cut into, so that there are points enough.
     pub(crate) parts: Vec<usize>,
@@ -32,38 +31,30 @@ pub(crate) struct DividedLine {
     pub(crate) staying: Vec<u32>,
 }
 
-/// Divides all lines.
-pub(crate) fn divide_lines(
-    lines: &[Line],
-    points: &[DVec3],
-    sizes: &SizeField,
-    torus: &Torus,
-) -> Vec<DividedLine> {
-    let smooth: Vec<Smooth> = lines.iter().map(|line| Smooth::new(line, points, sizes)).collect();
+/// Divides all lines but those that become points.
+pub(crate) fn divide_lines(around: &Surroundings<'_>, sizes: &SizeField) -> Vec<DividedLine> {
+    let lines = &around.skeleton.lines;
+    let smooth: Vec<Smooth> = lines.iter().map(|line| Smooth::new(line, around.points, sizes)).collect();
     let mut counts: Vec<usize> = smooth.iter().map(Smooth::count).collect();
     // Two single segments between the same points would be one.
     let mut between: BTreeMap<[Moved<u32>; 2], Vec<usize>> = BTreeMap::new();
     for (number, line) in lines.iter().enumerate() {
-        if line.is_closed() {
+        if around.short.has(id(number)) {
+            counts[number] = 0;
+        } else if line.is_closed() {
             counts[number] = counts[number].max(OF_LOOP);
         } else {
-            between.entry(ends(line, torus)).or_default().push(number);
+            between.entry(around.short.ends(line.ends(), around.torus)).or_default().push(number);
         }
     }
     for alike in between.values().filter(|alike| alike.len() > 1) {
         alike.iter().for_each(|line| counts[*line] = counts[*line].max(2));
     }
-    smooth.iter().zip(counts).map(|(line, count)| line.divide(count)).collect()
-}
-
-/// The ends of a line on the torus, in order, as seen from one of them.
-fn ends(line: &Line, torus: &Torus) -> [Moved<u32>; 2] {
-    let from = |own: u32, other: u32| {
-        let Moved { original, translation } = torus.vertices[own as usize];
-        [Moved { original, translation: Translation::ZERO }, torus.seen(other, translation)]
+    let divided = |(line, count): (&Smooth, usize)| match count {
+        0 => DividedLine::default(),
+        _ => line.divide(count),
     };
-    let (start, end) = (line.vertices[0], line.vertices[line.vertices.len() - 1]);
-    from(start, end).min(from(end, start))
+    smooth.iter().zip(counts).map(divided).collect()
 }
 
 /// A smooth line as it is.

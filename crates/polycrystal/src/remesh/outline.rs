@@ -1,6 +1,6 @@
 //! A boundary with the new points of its lines.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use subzero::FaceId;
 
@@ -9,6 +9,7 @@ use crate::mesh::id::id;
 use crate::remesh::lines::DividedLine;
 use crate::remesh::patch::Patch;
 use crate::remesh::reference::Reference;
+use crate::remesh::short_lines::ShortLines;
 use crate::remesh::size_field::{SizeField, Surroundings};
 use crate::remesh::skeleton::{LineEdge, Occurrence};
 use crate::remesh::torus::Moved;
@@ -26,7 +27,9 @@ pub(crate) struct Numbering {
 
 impl Numbering {
     pub(crate) fn new(around: &Surroundings<'_>, lines: &[DividedLine]) -> Self {
-        let is_original = |vertex: &u32| around.torus.vertices[*vertex as usize].original == *vertex;
+        let is_original = |vertex: &u32| {
+            around.torus.vertices[*vertex as usize].original == *vertex && !around.short.is_gone(*vertex)
+        };
         let nodes = (0u32..).zip(&around.skeleton.is_node).filter(|(_, is_node)| **is_node);
         let nodes: BTreeMap<u32, u32> = nodes.map(|(node, _)| node).filter(is_original).zip(0u32..).collect();
         let mut count = nodes.len();
@@ -43,7 +46,12 @@ impl Numbering {
         self.nodes.keys().copied()
     }
 
-    /// The new points of an occurrence of a line, from end to end.
+    /// The points that short lines became.
+    pub(crate) fn merged(&self, short: &ShortLines) -> BTreeSet<u32> {
+        short.staying().map(|node| self.nodes[&node]).collect()
+    }
+
+    /// The new points of an occurrence of a line, from end to end; a single one where the line becomes a point.
     pub(crate) fn along(
         &self,
         around: &Surroundings<'_>,
@@ -57,9 +65,12 @@ impl Numbering {
         // The start of a closed line is numbered after its other points.
         let start_of_loop = Moved { original: first + id(count), translation: occurrence.translation };
         let end_point = |vertex: u32| {
-            let Moved { original, translation } = around.torus.vertices[vertex as usize];
+            let Moved { original, translation } = around.node(vertex);
             self.nodes.get(&original).map_or(start_of_loop, |node| Moved { original: *node, translation })
         };
+        if around.short.has(occurrence.line) {
+            return vec![end_point(start)];
+        }
         std::iter::once(end_point(start)).chain(inner).chain([end_point(end)]).collect()
     }
 }
@@ -123,30 +134,39 @@ impl Outlined {
         let reference = Reference::new(points, of_points, corners, sizes.gradation);
         let mut outlined = Self { patch, reference, near, keys: BTreeMap::new() };
         let starts = |from: u32| starts_line(around, vertices[from as usize], &steps[&from]);
-        for run in runs(steps.clone(), starts) {
-            outlined.reduce(around, &run, &vertices, lines, numbering, &position);
+        let is_point = |run: &Vec<(u32, LineEdge)>| {
+            around.short.has(around.skeleton.occurrences[run[0].1.occurrence as usize].line)
+        };
+        let (points, runs): (Vec<_>, Vec<_>) = runs(steps.clone(), starts).into_iter().partition(is_point);
+        let mut merged = BTreeMap::new();
+        for run in points {
+            let [stays, goes] = outlined.close(around, &run, numbering, &position);
+            merged.insert(goes, stays);
+        }
+        for run in runs {
+            let (start, edge) = run[0];
+            let mut points: Vec<u32> =
+                run.iter().map(|(point, _)| *merged.get(point).unwrap_or(point)).collect();
+            let vertices_along = &around.skeleton.occurrences[edge.occurrence as usize].vertices;
+            if vertices_along[edge.step as usize] != vertices[start as usize] {
+                points.reverse();
+            }
+            outlined.reduce(around, (&points, edge.occurrence), lines, numbering, &position);
         }
         outlined
     }
 
-    /// Moves the points of one line to the new ones: the nearest smooth point takes the place of each, and others close into these.
+    /// Moves the points of one line, in its order, to the new ones: the nearest smooth point takes the place of each, and others close into these.
     fn reduce(
         &mut self,
         around: &Surroundings<'_>,
-        run: &[(u32, LineEdge)],
-        vertices: &[u32],
+        (points, number): (&[u32], u32),
         lines: &[DividedLine],
         numbering: &Numbering,
         position: &impl Fn(Moved<u32>) -> glam::DVec3,
     ) {
-        let number = run[0].1.occurrence;
         let occurrence = &around.skeleton.occurrences[number as usize];
         let line = &lines[occurrence.line as usize];
-        let mut points: Vec<u32> = run.iter().map(|(point, _)| *point).collect();
-        let (start, step) = (run[0].0, run[0].1.step as usize);
-        if occurrence.vertices[step] != vertices[start as usize] {
-            points.reverse();
-        }
         let mut fine = vec![points[0]];
         for (ends, parts) in points.windows(2).zip(&line.parts) {
             let (mut from, to) = (ends[0], ends[1]);
@@ -175,6 +195,27 @@ impl Outlined {
             self.patch.points[point as usize] = position(key);
             self.keys.insert(point, key);
         }
+    }
+
+    /// Closes a line into one of its ends; returns that and the other.
+    fn close(
+        &mut self,
+        around: &Surroundings<'_>,
+        run: &[(u32, LineEdge)],
+        numbering: &Numbering,
+        position: &impl Fn(Moved<u32>) -> glam::DVec3,
+    ) -> [u32; 2] {
+        let [stays, goes] = [run[0].0, run[run.len() - 1].0];
+        let number = run[0].1.occurrence;
+        run[1..].iter().for_each(|(point, _)| self.close_into([*point, stays]));
+        let of_other = std::mem::take(&mut self.patch.lines[goes as usize]);
+        let lines = &mut self.patch.lines[stays as usize];
+        lines.extend(of_other);
+        lines.retain(|line| *line != number);
+        let key = numbering.along(around, &around.skeleton.occurrences[number as usize], 0)[0];
+        self.patch.points[stays as usize] = position(key);
+        self.keys.insert(stays, key);
+        [stays, goes]
     }
 
     /// Collapses an edge of the outline, after what it would pinch is halved.

@@ -13,13 +13,14 @@ use crate::mesh::id::id;
 use crate::remesh::lines::divide_lines;
 use crate::remesh::outline::Numbering;
 use crate::remesh::parts::Parts;
+use crate::remesh::short_lines::ShortLines;
 use crate::remesh::size_field::{SizeField, Surroundings};
 use crate::remesh::skeleton::Skeleton;
 use crate::remesh::torus::Torus;
 use crate::remesh::{
     ElementSize, Faulty, RemeshTuning, Remeshed, positions_on_lines, shaped_parts, until_valid, volumes,
 };
-use crate::{Fault, Faults, GrainId, Level, Mesh, Network, NetworkError, validate};
+use crate::{BoundaryId, Fault, Faults, GrainId, Level, Mesh, Network, NetworkError, Side, validate};
 use assembled::assemble;
 
 /// Triangles that fill grains in the plane.
@@ -63,7 +64,10 @@ pub(super) fn remeshed(
     let is_corner = |vertex: usize| sets.walls(level.walls[vertex]).len() > 1;
     let skeleton = Skeleton::new((level, mesh), sets, &torus, is_corner);
     let parts = Parts::without_copies((level, mesh), &skeleton);
-    let around = Surroundings {
+    // Triangles in the plane have the number of their grain for a boundary.
+    let sides = |grain: BoundaryId| [Side::Grain(GrainId(grain.0)); 2];
+    let mut around = Surroundings {
+        short: ShortLines::default(),
         level,
         mesh,
         points,
@@ -73,8 +77,11 @@ pub(super) fn remeshed(
         is_plane: true,
     };
     until_valid(size, tuning, |halved, refinements| {
+        if size.merges_short_lines {
+            around.short = ShortLines::new(network, &around, sides, tuning.short_line * size.length, halved);
+        }
         let sizes = SizeField::new(&around, size, halved, tuning);
-        let divided = divide_lines(&skeleton.lines, points, &sizes, &torus);
+        let divided = divide_lines(&around, &sizes);
         let numbering = Numbering::new(&around, &divided);
         let positions = positions_on_lines(&around, &divided, &numbering);
         let shaped = shaped_parts(network, &around, &sizes, (&divided, &numbering, &positions), tuning);
@@ -103,7 +110,8 @@ pub(super) fn remeshed(
             return Ok(Err(Faulty { faults: Faults(faults), places }));
         }
         let triangles = Some(mesh);
-        Ok(Ok(Remeshed { network, points, certificate, refinements, middles, triangles }))
+        let merged = around.short.merged.clone();
+        Ok(Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles }))
     })
 }
 

@@ -12,8 +12,9 @@ use crate::mesh::id::id;
 use crate::remesh::ElementSize;
 use crate::remesh::gradation::Gradation;
 use crate::remesh::parts::Parts;
-use crate::remesh::skeleton::{Occurrence, Skeleton};
-use crate::remesh::torus::Torus;
+use crate::remesh::short_lines::ShortLines;
+use crate::remesh::skeleton::{Line, Occurrence, Skeleton};
+use crate::remesh::torus::{Moved, Torus};
 use crate::remesh::tuning::RemeshTuning;
 
 /// The size at each vertex of the finest level; the same at all copies of one.
@@ -30,8 +31,21 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) torus: &'a Torus,
     pub(crate) skeleton: &'a Skeleton,
     pub(crate) parts: &'a Parts,
+    pub(crate) short: ShortLines,
     /// Whether all triangles lie in the plane, so that boundaries are lines.
     pub(crate) is_plane: bool,
+}
+
+impl<'a> Surroundings<'a> {
+    /// The lines that do not become points, with their numbers.
+    fn lasting_lines(&self) -> impl Iterator<Item = (u32, &'a Line)> + '_ {
+        (0u32..).zip(&self.skeleton.lines).filter(|(number, _)| !self.short.has(*number))
+    }
+
+    /// What the vertex at which a line ends is in the new network.
+    pub(crate) fn node(&self, vertex: u32) -> Moved<u32> {
+        self.short.node(self.torus.vertices[vertex as usize])
+    }
 }
 
 impl SizeField {
@@ -83,10 +97,8 @@ impl SizeField {
 
     /// No size is more than the length of a line at its points.
     fn limit_on_lines(&mut self, around: &Surroundings<'_>, asked: f64) {
-        for line in &around.skeleton.lines {
-            let place = |vertex: u32| around.points[vertex as usize];
-            let length: f64 =
-                line.vertices.windows(2).map(|ends| place(ends[0]).distance(place(ends[1]))).sum();
+        for (_, line) in around.lasting_lines() {
+            let length = line.length(around.points);
             if length < asked {
                 line.vertices.iter().for_each(|vertex| self.lower(around.torus, *vertex as usize, length));
             }
@@ -108,9 +120,10 @@ impl SizeField {
                 let mut lines: Vec<u32> = lines.map(|line| line.occurrence).collect();
                 lines.sort_unstable();
                 lines.dedup();
+                let lines = lines.iter().map(|line| &around.skeleton.occurrences[*line as usize]);
                 let lines: Vec<&Occurrence> =
-                    lines.iter().map(|line| &around.skeleton.occurrences[*line as usize]).collect();
-                distances(&lines, around.points, asked)
+                    lines.filter(|occurrence| !around.short.has(occurrence.line)).collect();
+                distances(&lines, around, asked)
             })
             .collect();
         let floor = tuning.smallest_share * asked;
@@ -155,7 +168,7 @@ impl SizeField {
 
     /// No size on a line is more than a share of its radius of curvature, as its steps show it.
     fn limit_by_curvature_of_lines(&mut self, around: &Surroundings<'_>, share: f64, floor: f64) {
-        for line in &around.skeleton.lines {
+        for (_, line) in around.lasting_lines() {
             for around_middle in line.vertices.windows(3) {
                 let [before, at, after] = [0, 1, 2].map(|k| around.points[around_middle[k] as usize]);
                 let (step, next) = (at - before, after - at);
@@ -217,8 +230,8 @@ pub(crate) struct Halved {
 }
 
 /// Of the vertices of lines the distances, where less than a limit, to other lines that share no end.
-fn distances(lines: &[&Occurrence], points: &[DVec3], limit: f64) -> Vec<(u32, f64)> {
-    let place = |vertex: u32| points[vertex as usize];
+fn distances(lines: &[&Occurrence], around: &Surroundings<'_>, limit: f64) -> Vec<(u32, f64)> {
+    let place = |vertex: u32| around.points[vertex as usize];
     let bounds: Vec<[DVec3; 2]> = lines
         .iter()
         .map(|line| {
@@ -228,7 +241,9 @@ fn distances(lines: &[&Occurrence], points: &[DVec3], limit: f64) -> Vec<(u32, f
             })
         })
         .collect();
-    let ends = |line: &Occurrence| [line.vertices[0], line.vertices[line.vertices.len() - 1]];
+    let ends = |line: &Occurrence| {
+        [line.vertices[0], line.vertices[line.vertices.len() - 1]].map(|end| around.node(end))
+    };
     let mut found = Vec::new();
     for (own, line) in lines.iter().enumerate() {
         for (other, across) in lines.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec3;
 use voronoi::Translation;
 
 use crate::mesh::id::id;
@@ -19,7 +20,33 @@ pub(crate) struct Line {
 
 impl Line {
     pub(crate) fn is_closed(&self) -> bool {
-        self.vertices[0] == self.vertices[self.vertices.len() - 1]
+        let [first, last] = self.ends();
+        first == last
+    }
+
+    pub(crate) fn ends(&self) -> [u32; 2] {
+        [self.vertices[0], self.vertices[self.vertices.len() - 1]]
+    }
+
+    fn steps<'a>(&'a self, points: &'a [DVec3]) -> impl Iterator<Item = [DVec3; 2]> + 'a {
+        self.vertices.windows(2).map(|ends| [ends[0], ends[1]].map(|end| points[end as usize]))
+    }
+
+    pub(crate) fn length(&self, points: &[DVec3]) -> f64 {
+        self.steps(points).map(|[from, to]| from.distance(to)).sum()
+    }
+
+    /// The place halfway along the line.
+    pub(crate) fn middle(&self, points: &[DVec3]) -> DVec3 {
+        let mut left = 0.5 * self.length(points);
+        for [from, to] in self.steps(points) {
+            let length = from.distance(to);
+            if left <= length {
+                return if length > 0.0 { from.lerp(to, left / length) } else { from };
+            }
+            left -= length;
+        }
+        points[self.ends()[1] as usize]
     }
 }
 

@@ -16,6 +16,8 @@ pub struct RemeshTuning {
     pub longest: f64,
     /// The same below which it collapses.
     pub shortest: f64,
+    /// Length of a line, in units of the size asked for, below which it may become a point. With 0.8, as of edges, ends of lines in cut boxes moved farther than what is near them is wide.
+    pub short_line: f64,
     /// Rounds of halving, collapsing, flipping and moving within boundaries.
     pub rounds: usize,
     /// Cosine of the angle between a triangle and the smooth surface there, and between a triangle before and after a change (60 degrees).
@@ -40,6 +42,7 @@ impl Default for RemeshTuning {
             smallest_share: 0.1,
             longest: 4.0 / 3.0,
             shortest: 4.0 / 5.0,
+            short_line: 0.5,
             rounds: 10,
             least_cosine: 0.5,
             wide: 0.819_152,

@@ -155,6 +155,75 @@ fn curved_boundaries_get_small_elements_where_asked() {
     assert!((200..500).contains(&count), "{count}");
 }
 
+/// What vertices, edges and triangles of each grain add up to: 2 of a ball, and less where its surface touches itself.
+fn euler_numbers(network: &Network) -> Vec<i64> {
+    let mut parts = vec![(BTreeSet::new(), BTreeSet::new(), 0i64); network.grain_count()];
+    let level = network.finest();
+    for (triangle, corners) in (0u32..).zip(triangles(network)) {
+        for (grain, _) in network.boundaries()[level.boundary(triangle).index()].signed_grains() {
+            let (vertices, edges, count) = &mut parts[grain.index()];
+            vertices.extend(*corners);
+            let [a, b, c] = *corners;
+            edges.extend([[a, b], [b, c], [c, a]].map(|[from, to]| [from.min(to), from.max(to)]));
+            *count += 1;
+        }
+    }
+    let number = |count: usize| i64::try_from(count).expect("a small network");
+    parts
+        .iter()
+        .map(|(vertices, edges, count)| number(vertices.len()) - number(edges.len()) + count)
+        .collect()
+}
+
+#[test]
+fn short_lines_become_points_and_grains_stay_balls() {
+    for periods in [BVec3::FALSE, BVec3::new(true, true, false), BVec3::TRUE] {
+        let (network, flat) = regular_network(&Domain::unit_cube().with_periods(periods), 20, 3, 2);
+        let points = relaxed(&network, &flat);
+        let keeping = size(&network, 1.2);
+        let merging = ElementSize { merges_short_lines: true, ..keeping };
+        let kept = network.remeshed(&points, &keeping, BVec3::FALSE).expect("remeshed");
+        let remeshed = network.remeshed(&points, &merging, BVec3::FALSE).expect("remeshed");
+        assert!(kept.merged.is_empty() && !remeshed.merged.is_empty());
+        assert!(remeshed.certificate.largest_volume_error < 1e-9);
+        assert!(triangles(&remeshed.network).len() < triangles(&kept.network).len());
+        assert_eq!(euler_numbers(&remeshed.network), euler_numbers(&network));
+        let [lines, _] = junctions(&network, &points);
+        let counted = remeshed.network.junction_counts();
+        assert_eq!(
+            [counted.triple_lines, counted.quadruple_points],
+            junctions(&remeshed.network, &remeshed.points)
+        );
+        assert_eq!(counted.triple_lines, lines - remeshed.merged.len());
+        for line in &remeshed.merged {
+            assert!(line.length < 0.5 * merging.length && line.grains.len() >= 2, "{line:?}");
+            let moved = remeshed.points.iter().map(|point| point.distance(line.place));
+            assert!(moved.fold(f64::INFINITY, f64::min) < 0.2 * merging.length, "{line:?}");
+        }
+    }
+}
+
+#[test]
+fn short_lines_of_cut_boxes_become_points_where_nothing_folds() {
+    let (network, flat) = regular_network(&Domain::unit_cube().with_periods(BVec3::TRUE), 20, 2, 2);
+    let BoxCut { network: cut, points, .. } =
+        network.cut_at_box(&relaxed(&network, &flat), false).expect("cut");
+    let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
+    let size = ElementSize { merges_short_lines: true, ..size(&network, 4.0) };
+    let remeshed = cut.remeshed(&points, &size, BVec3::TRUE).expect("remeshed");
+    assert!(!remeshed.merged.is_empty());
+    assert!(remeshed.certificate.largest_volume_error < 1e-9);
+    assert_eq!(euler_numbers(&remeshed.network), euler_numbers(&cut));
+    for axis in 0..3 {
+        let on = |wall: f64| {
+            let on_wall = remeshed.points.iter().filter(|point| point[axis] == wall);
+            let bits = on_wall.map(|point| [1, 2].map(|other| point[(axis + other) % 3].to_bits()));
+            bits.collect::<BTreeSet<_>>()
+        };
+        assert_eq!(on(0.0), on(1.0));
+    }
+}
+
 #[test]
 fn sizes_that_are_none_are_refused() {
     let (network, flat) = regular_network(&Domain::unit_cube(), 3, 1, 0);

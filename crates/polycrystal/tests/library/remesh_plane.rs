@@ -146,3 +146,29 @@ fn elements_are_smaller_where_boundaries_are_curved() {
     };
     assert!(count(Some(0.1)) as f64 > 1.2 * count(None) as f64);
 }
+
+/// A line in the plane is a boundary, which goes with it.
+#[test]
+fn short_lines_become_points_where_four_grains_meet() {
+    for domain in [Domain::unit_square(), Domain::unit_square().with_periods(BVec3::new(true, true, false))] {
+        let (network, points) = grains(&domain, 1, &Relaxation::Equilibrium);
+        let keeping = size(&network, 3.0);
+        let merging = ElementSize { merges_short_lines: true, ..keeping };
+        let remeshed = network.remeshed(&points, &merging, BVec3::FALSE).expect("remeshed");
+        let merged = &remeshed.merged;
+        assert!(!merged.is_empty());
+        assert!(remeshed.certificate.largest_volume_error < 1e-9);
+        let gone = network.boundaries().len() - remeshed.network.boundaries().len();
+        assert!((merged.len()..=2 * merged.len()).contains(&gone), "{gone}");
+        let four = &remeshed.network.junction_counts().points_by_sides[&4];
+        assert_eq!(*four, merged.len());
+        assert!(merged.iter().all(|line| line.length < 0.5 * merging.length));
+        assert_eq!(
+            network.junction_counts().triple_lines - merged.len(),
+            remeshed.network.junction_counts().triple_lines
+        );
+        let kept = network.remeshed(&points, &keeping, BVec3::FALSE).expect("remeshed");
+        let count = |remeshed: &Remeshed| remeshed.triangles.as_ref().map_or(0, |mesh| mesh.triangles.len());
+        assert!(count(&remeshed) < count(&kept));
+    }
+}

@@ -13,6 +13,7 @@ use crate::remesh::assembled::{Assembled, NewBoundary};
 use crate::remesh::lines::DividedLine;
 use crate::remesh::middles::{EdgeMiddles, LineMiddle};
 use crate::remesh::outline::Numbering;
+use crate::remesh::short_lines::meetings_at;
 use crate::remesh::size_field::Surroundings;
 use crate::remesh::torus::Moved;
 use crate::{BoundaryId, GrainId, Level, Mesh, Network, NetworkError, NodeType, WallSet};
@@ -80,14 +81,24 @@ pub(super) fn assemble(
         }
         for (point, vertex) in [points[0], points[points.len() - 1]].into_iter().zip(vertices) {
             let vertex = vertex as usize;
-            at[point as usize] =
-                (smooth.node_types[vertex], smooth.grain_counts[vertex], smooth.walls[vertex]);
+            let original = around.torus.vertices[vertex].original;
+            let is_gone = around.short.is_gone(original);
+            let stays = if is_gone { around.node(id(vertex)).original as usize } else { vertex };
+            at[point as usize] = (smooth.node_types[stays], smooth.grain_counts[stays], smooth.walls[stays]);
             if around.skeleton.is_node[vertex] {
                 corners.push(point);
             }
         }
         segments.extend(points.windows(2).map(|ends| [ends[0], ends[1]]));
         boundary_of.resize(segments.len(), piece.boundary);
+    }
+    let ends = pieces.iter().flat_map(|piece| {
+        let points = along(piece).0;
+        [points[0], points[points.len() - 1]].map(|point| (point, piece.boundary))
+    });
+    for (point, meeting) in meetings_at(&numbering.merged(&around.short), network, ends) {
+        let at = &mut at[number(point) as usize];
+        (at.0, at.1) = (meeting.node_type, meeting.grains);
     }
     let pairs = (id(numbering.count)..).zip(&copies).map(|(secondary, copy)| PeriodicPair {
         secondary,
@@ -121,7 +132,8 @@ pub(super) fn assemble(
     let (grains, triangles) = filled.into_iter().unzip();
     let unmoved = |original| Moved { original, translation: Translation::ZERO };
     let originals = (0..id(numbering.count)).map(unmoved).chain(copies.iter().copied()).collect();
-    let assembled = Assembled { network: network.with_level(level), originals, positions };
+    let network = network.with_level(level).with_merged_lines(&around.short.sides);
+    let assembled = Assembled { network, originals, positions };
     Ok(AssembledPlane { assembled, triangles, grains, inner, pieces })
 }
 
