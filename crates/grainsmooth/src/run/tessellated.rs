@@ -204,8 +204,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         }
         let mut all = cells_of(config, &domain, &seeds.seeds)?;
         for step in 1..=config.centroid_steps() {
-            let centroids = all.0.centroids();
-            seeds.seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
+            seeds.seeds.iter_mut().zip(all.0.lloyd_step()).for_each(|(seed, moved)| seed.position = moved);
             all = cells_of(config, &domain, &seeds.seeds)?;
             progress(Stage::Cells, step as usize, config.centroid_steps() as usize);
         }

@@ -8,6 +8,11 @@ use crate::diagram::planar_measures::planar_measures;
 use crate::diagram::polygon::{FaceMeasure, Polygon};
 use crate::{CellId, CellMeasure, Dimension, FaceId, Side, Tessellation, VertexId};
 
+/// Distance of the places that Lloyd's algorithm moves seeds to, along each axis and as a share of the domain's extent; a seed that one of
+/// them is no nearer to stays. This is far below the distance of seeds, and far above the 1e-15 or so by which centroids are off: that would
+/// tilt columns and layers of cells, and tear their corners into edges of 1e-12.
+const LLOYD_GRID: f64 = 1.0 / (1u64 << 40) as f64;
+
 impl Tessellation {
     /// Volume, surface and counts of every cell.
     pub fn cell_measures(&self) -> Vec<CellMeasure> {
@@ -19,30 +24,44 @@ impl Tessellation {
         face_area_and_centroid(self, face).0
     }
 
-    /// The centroid of every cell, in the domain: where a step of Lloyd's algorithm moves the seeds. That of an empty cell is
-    /// its seed.
-    ///
-    /// Seeds in the centroids of their cells, again and again, even the cells out: each step lowers the sum over all cells
-    /// of the integral of `|x - s|^2 - w`.
+    /// The centroid of every cell, in the domain. That of an empty cell is its seed.
     pub fn centroids(&self) -> Vec<DVec3> {
+        let cells = self.cell_measures();
+        cells.iter().zip(&self.seeds).map(|(cell, seed)| self.nearest_inside(cell.centroid, *seed)).collect()
+    }
+
+    /// The seeds after a step of Lloyd's algorithm: in the centroids of their cells, but for the last digits. Those of seeds that lie in one
+    /// plane or repeat are the same afterwards too, although centroids are not known that well.
+    ///
+    /// Steps even the cells out: each lowers the sum over all cells of the integral of `|x - s|^2 - w`.
+    pub fn lloyd_step(&self) -> Vec<DVec3> {
         self.toward_centroids(&self.cell_measures(), 1.0)
     }
 
-    /// The seeds moved by a fraction of the way to the centroids of their cells, in the domain.
+    /// The same for a fraction of the way, given the cells' measures.
     pub(crate) fn toward_centroids(&self, measures: &[CellMeasure], fraction: f64) -> Vec<DVec3> {
-        let (lower, upper) = (self.domain.lower(), self.domain.upper());
-        let inside = measures.iter().zip(&self.seeds).map(|(cell, seed)| {
+        let lower = self.domain.lower();
+        let grid = LLOYD_GRID * self.domain.size().max_element();
+        let moved = measures.iter().zip(&self.seeds).map(|(cell, seed)| {
             let goal = if fraction < 1.0 { seed.lerp(cell.centroid, fraction) } else { cell.centroid };
-            // Across periodic walls the cell of a seed inside may have its centroid outside.
-            let wrapped = self.domain.wrapped(goal);
-            // Rounding may put the centroid of a very thin cell a last place outside.
-            let clamped = wrapped.clamp(lower, upper);
-            // The same beside an oblique wall, where the way to the seed leads inside.
-            let steps = (-52..=0).map(|exponent| clamped.lerp(*seed, 2f64.powi(exponent)));
-            let mut places = std::iter::once(clamped).chain(steps);
-            places.find(|place| self.domain.contains(*place)).unwrap_or(*seed)
+            let stays = (goal - *seed).abs().cmplt(DVec3::splat(0.5 * grid));
+            let place = DVec3::select(stays, *seed, lower + ((goal - lower) / grid).round() * grid);
+            self.nearest_inside(place, *seed)
         });
-        inside.collect()
+        moved.collect()
+    }
+
+    /// A place in the domain that is a goal, or beside it on the way to a seed.
+    fn nearest_inside(&self, goal: DVec3, seed: DVec3) -> DVec3 {
+        let (lower, upper) = (self.domain.lower(), self.domain.upper());
+        // Across periodic walls the cell of a seed inside may have its centroid outside.
+        let wrapped = self.domain.wrapped(goal);
+        // Rounding may put the centroid of a very thin cell a last place outside.
+        let clamped = wrapped.clamp(lower, upper);
+        // The same beside an oblique wall, where the way to the seed leads inside.
+        let steps = (-52..=0).map(|exponent| clamped.lerp(seed, 2f64.powi(exponent)));
+        let mut places = std::iter::once(clamped).chain(steps);
+        places.find(|place| self.domain.contains(*place)).unwrap_or(seed)
     }
 }
 
