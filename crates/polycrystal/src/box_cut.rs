@@ -106,7 +106,7 @@ impl Network {
     /// ```
     ///
     /// # Errors
-    /// [`NetworkError::CutCrosses`]; [`NetworkError::TouchesItself`]; [`NetworkError::CutInvalid`] where the pieces are no valid network otherwise.
+    /// [`NetworkError::CutCrosses`]; [`NetworkError::TouchesItself`]; [`NetworkError::VolumeNotRestored`]; [`NetworkError::CutInvalid`] where the pieces are no valid network otherwise.
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
@@ -152,7 +152,7 @@ impl Network {
             widen(&mut pieces, &caps, is_flat);
         }
         if shaping != Shaping::None && !is_flat {
-            restore(&mut pieces, &caps, self.cell_volumes());
+            restore(&mut pieces, &caps, self.cell_volumes())?;
         }
         self.in_box(&pieces, &caps)
     }

@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::box_cut::Piece;
 use crate::box_cut::pieces::Pieces;
+use crate::check::certificate::VOLUME_TOLERANCE;
 use crate::solver::least_motion::{MovingPoint, least_motion};
-use crate::{Freedom, Side};
+use crate::{Freedom, GrainId, NetworkError, Side};
 
 /// What a volume may lack in the end, as a share of it.
 const TOLERANCE: f64 = 1e-12;
@@ -14,17 +15,27 @@ const TOLERANCE: f64 = 1e-12;
 const STEPS: usize = 12;
 
 /// Moves points so that grains have the given volumes.
-pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) {
-    for _ in 0..STEPS {
-        let missing: Vec<f64> = measured(pieces, caps, volumes.len())
-            .iter()
-            .zip(volumes)
-            .map(|(is, wanted)| wanted - is)
-            .collect();
-        if missing.iter().zip(volumes).all(|(lack, volume)| lack.abs() <= TOLERANCE * volume) {
-            return;
+///
+/// # Errors
+/// [`NetworkError::VolumeNotRestored`] where the certificate would refuse a volume.
+pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) -> Result<(), NetworkError> {
+    let mut steps = 0;
+    loop {
+        let is = measured(pieces, caps, volumes.len());
+        // Grains that have vanished have no volume.
+        let error = |is: f64, wanted: f64| if wanted > 0.0 { (is - wanted).abs() / wanted } else { 0.0 };
+        let errors = is.iter().zip(volumes).map(|(is, wanted)| error(*is, *wanted));
+        let (grain, relative_error) =
+            (0..).zip(errors).max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains");
+        if relative_error <= TOLERANCE || steps == STEPS && relative_error <= VOLUME_TOLERANCE {
+            return Ok(());
         }
+        if steps == STEPS {
+            return Err(NetworkError::VolumeNotRestored { grain: GrainId(grain), relative_error });
+        }
+        let missing: Vec<f64> = volumes.iter().zip(is).map(|(wanted, is)| wanted - is).collect();
         correct(pieces, &missing);
+        steps += 1;
     }
 }
 

@@ -20,7 +20,7 @@ use crate::mesh::volume::{Cone, ConeSum};
 use crate::{AngleStatistics, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Largest difference of a volume from what it should be, as a share of that.
-const VOLUME_TOLERANCE: f64 = 1e-9;
+pub(crate) const VOLUME_TOLERANCE: f64 = 1e-9;
 
 /// What is said about a surface, to be compared with what it is.
 #[derive(Debug, Clone, Copy, Default)]

@@ -195,3 +195,15 @@ fn few_grains_are_cut_or_refused() {
     }
     assert!(cut > 4, "{cut} of 8");
 }
+
+/// Campaign 20261202:152, where points that had moved were no way to the volumes of grains a hundredth as wide as others: such a cut was the result,
+/// and the certificate refused it. Here no motion gives the grains twice the volume that the box has.
+#[test]
+fn a_cut_whose_volumes_cannot_be_restored_moves_no_points() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let cells = Tessellation::new(&domain, &random_seeds(&domain, 20, 7)).expect("cells");
+    let (network, points) = Network::new(&cells, Junctions::Crease, 0).expect("a network");
+    let doubled: Vec<f64> = network.cell_volumes().iter().map(|volume| 2.0 * volume).collect();
+    let cut = network.with_cell_volumes(doubled).cut_at_box(&points, false).expect("is cut");
+    assert!(cut.attempts.len() == 3 && cut.attempts[1].said.contains("wrong volume"), "{:?}", cut.attempts);
+}
