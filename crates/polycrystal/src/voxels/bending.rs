@@ -1,12 +1,14 @@
 //! Points of least bending, each within its box.
 
+use std::ops::Range;
+
 use cancellation::check_cancelled;
 use glam::{BVec3, BVec3A, DVec3, I8Vec3, UVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::mesh::id::id;
 use crate::voxels::copies::across;
-use crate::voxels::graph::Graph;
+use crate::voxels::graph::{Graph, few};
 use crate::voxels::lattice::Lattice;
 use crate::voxels::tuning::VoxelTuning;
 
@@ -52,13 +54,62 @@ impl<'a> Boxes<'a> {
     }
 }
 
+/// What a step needs of a point.
+#[derive(Clone, Copy)]
+struct Row {
+    /// The first of its neighbours among those of all points.
+    first: usize,
+    /// How many of them it follows, from the first one on.
+    followed: u8,
+    /// After how many of them those come that follow it, and how many they are.
+    followers: [u8; 2],
+    /// The axes that it stays on, a bit each.
+    fixed: u8,
+    /// How far the middle of its box is from the mean of the middles of those that it follows, times their number: whole edges.
+    bend_of_middle: I8Vec3,
+    /// How much its bending counts beside that of others.
+    weight: f32,
+}
+
+impl Row {
+    fn new(graph: &Graph, boxes: &Boxes<'_>, point: usize, of_lines: f32) -> Self {
+        let followed = graph.followed(point);
+        let middle = boxes.middle(point);
+        let from = |other: &u32| across(boxes.periods, boxes.middle(*other as usize), middle);
+        let [fixed, ..] = boxes.is_fixed(point).bitmask().to_le_bytes();
+        let Range { start, end } = graph.followers_among_neighbors(point);
+        Self {
+            first: graph.first_neighbor(point),
+            followed: few(followed.len()),
+            followers: [start, end - start],
+            fixed,
+            bend_of_middle: followed.iter().map(from).sum::<DVec3>().as_i8vec3(),
+            weight: if graph.is_on_line(point) { of_lines } else { 1.0 },
+        }
+    }
+
+    /// That of one point in the mean that this one follows.
+    fn share(self) -> f32 {
+        1.0 / f32::from(self.followed.max(1))
+    }
+
+    fn followed(self, neighbors: &[u32]) -> &[u32] {
+        &neighbors[self.first..][..usize::from(self.followed)]
+    }
+
+    fn followers(self, neighbors: &[u32]) -> &[u32] {
+        let [before, count] = self.followers.map(usize::from);
+        &neighbors[self.first + before..][..count]
+    }
+}
+
 /// The points x for which this is least, each within its box, in units of the edge of a voxel:
 ///
-/// sum of |x - where it starts|^2 + `bending` (sum inside boundaries of |x - mean of its neighbours|^2 + sum along lines of |x - mean of both neighbours along the line|^2).
+/// sum of |x - where it starts|^2 + `bending` (sum inside boundaries of |x - mean of its neighbours|^2 + `bending_of_lines` sum along lines of |x - mean of both neighbours along the line|^2).
 ///
 /// `starts` are displacements from the middles of the boxes. `progress` is told how many steps of how many are done.
 ///
-/// A projected gradient with constant momentum (Nesterov, Introductory lectures on convex optimization, 2004, section 2.2.4); each point has the step that its row of the matrix allows.
+/// Chebyshev's semi-iteration (Golub and Varga 1961), where each point has the step that its row of the matrix allows, and stays within its box.
 /// The search is for displacements, in single precision: they are below 1, so this is exact to 1e-7 of a voxel.
 pub(super) fn least_bending(
     graph: &Graph,
@@ -68,56 +119,78 @@ pub(super) fn least_bending(
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> Vec<DVec3> {
     let count = graph.count();
-    // Of one point in the mean that a point follows.
-    let share = |point: usize| match graph.followed(point).len() {
-        0 => 0.0,
-        followed => 1.0 / followed as f32,
+    let row = |point: usize| Row::new(graph, boxes, point, tuning.bending_of_lines);
+    let rows: Vec<Row> = (0..count).into_par_iter().map(row).collect();
+    let neighbors = graph.neighbors();
+    let step = |row: &Row| {
+        // Rows of the matrix of means have the sum 2 at most; so this bounds the sum of a row of its square.
+        let own = if row.followed == 0 { 0.0 } else { row.weight };
+        let of_follower = |other: &u32| {
+            let other = rows[*other as usize];
+            other.share() * other.weight
+        };
+        let sum: f32 = row.followers(neighbors).iter().map(of_follower).sum();
+        1.0 / (1.0 + tuning.bending * 2.0 * (own + sum))
     };
-    let steps: Vec<f32> = (0..count)
-        .into_par_iter()
-        .map(|point| {
-            // Rows of the matrix of means have the sum 2 at most; so this bounds the sum of a row of its square.
-            let own = if graph.followed(point).is_empty() { 0.0 } else { 1.0 };
-            let sum: f32 = graph.followers(point).map(|other| share(other as usize)).sum();
-            1.0 / (1.0 + tuning.bending * 2.0 * (own + sum))
-        })
-        .collect();
-    // The distances from the starts alone curve the sum by 1: this is the root of its least curvature as a share of the largest.
-    let curvature = steps.iter().copied().fold(1.0, f32::min).sqrt();
-    let momentum = (1.0 - curvature) / (1.0 + curvature);
-    // Of the lattice: whole numbers of edges.
-    let bend_of_middle = |point: usize| {
-        let middle = |point: u32| boxes.middle(point as usize);
-        let followed = graph.followed(point).iter();
-        let from = followed.map(|other| across(boxes.periods, middle(*other), boxes.middle(point)));
-        from.sum::<DVec3>().as_i8vec3()
-    };
-    let bends_of_middles: Vec<I8Vec3> = (0..count).into_par_iter().map(bend_of_middle).collect();
-    let mut points: Vec<Vec3A> = starts.iter().map(|start| Vec3A::from(*start)).collect();
-    let mut ahead = points.clone();
-    // Distances from means, each times the share of one point in its mean.
-    let mut bends = vec![Vec3A::ZERO; count];
+    let steps: Vec<f32> = rows.par_iter().map(step).collect();
+    // The distances from the starts alone curve the sum by 1. So curvatures, times steps, are between the least step and 1.
+    let least = tuning.least_curvature * steps.iter().copied().fold(1.0, f32::min);
+    let mut acceleration = Acceleration::new(least.min(0.5));
+    // Zero along the axes that a point stays on.
     let within = DVec3::splat(boxes.within).as_vec3a();
+    let ways: [Vec3A; 8] = std::array::from_fn(|fixed| {
+        let is_fixed = BVec3A::new(fixed & 1 != 0, fixed & 2 != 0, fixed & 4 != 0);
+        Vec3A::select(is_fixed, Vec3A::ZERO, within)
+    });
+    let mut points: Vec<Vec3A> = starts.iter().map(|start| Vec3A::from(*start)).collect();
+    let mut moves = vec![Vec3A::ZERO; count];
+    // Distances from means, each times the share of one point in its mean.
+    let mut bends = moves.clone();
     for step in 0..tuning.bending_steps {
         check_cancelled();
         progress(step, tuning.bending_steps);
-        bends.par_iter_mut().enumerate().for_each(|(point, bend)| {
-            let followed = graph.followed(point);
-            let sum: Vec3A = followed.iter().map(|other| ahead[*other as usize]).sum();
-            let all = bends_of_middles[point].as_vec3a() + ahead[point] * followed.len() as f32 - sum;
-            *bend = all * share(point) * share(point);
+        bends.par_iter_mut().zip(&rows).zip(&points).for_each(|((bend, row), at)| {
+            let sum: Vec3A = row.followed(neighbors).iter().map(|other| points[*other as usize]).sum();
+            let all = row.bend_of_middle.as_vec3a() + *at * f32::from(row.followed) - sum;
+            *bend = all * (row.share() * row.share() * row.weight);
         });
-        points.par_iter_mut().zip(&mut ahead).enumerate().for_each(|(point, (at, ahead))| {
-            let from: Vec3A = graph.followers(point).map(|other| bends[other as usize]).sum();
-            let own = bends[point] * graph.followed(point).len() as f32;
-            let slope = *ahead - Vec3A::from(starts[point]) + tuning.bending * (own - from);
-            let next = (*ahead - slope * steps[point]).clamp(-within, within);
-            let is_fixed = BVec3A::from_array(boxes.is_fixed(point).into());
-            let next = Vec3A::select(is_fixed, Vec3A::ZERO, next);
-            *ahead = next + (next - *at) * momentum;
+        let [of_last, of_slope] = acceleration.next();
+        let moving = points.par_iter_mut().zip(&mut moves).zip(&bends).zip(&rows).zip(&steps).zip(starts);
+        moving.for_each(|(((((at, last), bend), row), step), start)| {
+            let from: Vec3A = row.followers(neighbors).iter().map(|other| bends[*other as usize]).sum();
+            let own = *bend * f32::from(row.followed);
+            let slope = *at - Vec3A::from(*start) + tuning.bending * (own - from);
+            let way = ways[usize::from(row.fixed)];
+            let next = (*at + *last * of_last - slope * (*step * of_slope)).clamp(-way, way);
+            *last = next - *at;
             *at = next;
         });
     }
     let place = |(point, displacement): (usize, &Vec3A)| boxes.middle(point) + displacement.as_dvec3();
     points.par_iter().enumerate().map(place).collect()
+}
+
+/// Chebyshev's factors, where curvatures are between a least one and 1.
+struct Acceleration {
+    least: f32,
+    /// Nothing before the first step.
+    last: Option<f32>,
+}
+
+impl Acceleration {
+    fn new(least: f32) -> Self {
+        Self { least, last: None }
+    }
+
+    /// How much of the last motion, and of the slope, a step takes.
+    fn next(&mut self) -> [f32; 2] {
+        let (middle, half) = ((1.0 + self.least) / 2.0, (1.0 - self.least) / 2.0);
+        let Some(last) = self.last else {
+            self.last = Some(half / middle);
+            return [0.0, 1.0 / middle];
+        };
+        let next = 1.0 / (2.0 * middle / half - last);
+        self.last = Some(next);
+        [next * last, 2.0 * next / half]
+    }
 }

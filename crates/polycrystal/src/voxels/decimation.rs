@@ -67,10 +67,10 @@ impl Faulty {
 }
 
 impl Decimation<'_> {
-    /// The surface with a part of its points, which move so that grains have their volumes; those that are held are all there.
+    /// The surface with a part of its points, which move so that grains have their volumes, but for those that stay; those that are held are all there.
     ///
     /// Small grains keep shorter edges.
-    pub(super) fn decimated(&self, is_held: &[bool]) -> VoxelSurface {
+    pub(super) fn decimated(&self, is_held: &[bool], stays: &[bool]) -> VoxelSurface {
         let VoxelSurface { points, places, cut } = self.whole;
         // Elements of copies go with their originals.
         let count = cut.kind_of.iter().take_while(|kind| kind.index() < self.kinds.len()).count();
@@ -114,7 +114,8 @@ impl Decimation<'_> {
         let mut points: Vec<DVec3> = kept.iter().map(|point| points[*point as usize]).collect();
         let boxes = Boxes::new(&places, self.lattice, self.tuning.within_when_decimated);
         let search = VolumeSearch::new(points.len(), &cut, self.wanted, self.tuning);
-        search.restore(&mut points, &boxes, &vec![false; kept.len()]);
+        let stays: Vec<bool> = kept.iter().map(|point| stays[*point as usize]).collect();
+        search.restore(&mut points, &boxes, &stays);
         VoxelSurface { points, places, cut }
     }
 

@@ -13,9 +13,11 @@ use crate::voxels::staircase::{Faces, Staircase};
 #[derive(Default)]
 pub(super) struct Graph {
     starts: Vec<usize>,
-    /// Those along lines first.
+    /// Those along lines first. Of these, nodes come first, of the others points inside boundaries: so those that follow a point stand in a row.
     neighbors: Vec<u32>,
     along_lines: Vec<u8>,
+    /// Of each point: the first of its neighbours that follow it, and the first one behind these.
+    following: Vec<[u8; 2]>,
 }
 
 /// Points whose neighbours a thread looks for in one go: enough to keep it busy.
@@ -23,7 +25,7 @@ const POINTS_AT_ONCE: usize = 1 << 14;
 
 /// What a point is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Part {
+enum Part {
     Boundary,
     Line,
     /// Where lines end or meet.
@@ -53,26 +55,38 @@ impl Graph {
             let first = chunk * POINTS_AT_ONCE;
             around(first..count.min(first + POINTS_AT_ONCE))
         });
-        let mut all = Self { starts: vec![0], ..Self::default() };
-        for some in chunks.collect::<Vec<Self>>() {
+        let mut chunks: Vec<Self> = chunks.collect();
+        let along_lines: Vec<u8> =
+            chunks.iter_mut().flat_map(|some| std::mem::take(&mut some.along_lines)).collect();
+        let firsts = (0..count).into_par_iter().step_by(POINTS_AT_ONCE);
+        firsts.zip(&mut chunks).for_each(|(first, some)| some.put_followers_together(first, &along_lines));
+        let mut all = Self { starts: vec![0], along_lines, ..Self::default() };
+        for some in chunks {
             let before = all.neighbors.len();
             all.starts.extend(some.starts.iter().map(|end| before + end));
             all.neighbors.extend(some.neighbors);
-            all.along_lines.extend(some.along_lines);
+            all.following.extend(some.following);
         }
         all
     }
 
-    pub(super) fn count(&self) -> usize {
-        self.along_lines.len()
+    /// Puts the neighbours of some points in order, of which the first has this number.
+    fn put_followers_together(&mut self, first: usize, along_lines: &[u8]) {
+        let part = |point: &u32| part(along_lines[*point as usize]);
+        let mut start = 0;
+        for (end, along) in self.starts.iter().zip(&along_lines[first..]) {
+            let (along, off) = self.neighbors[start..*end].split_at_mut(usize::from(*along));
+            along.sort_by_key(|other| part(other) != Part::Node);
+            off.sort_by_key(|other| part(other) != Part::Boundary);
+            let nodes = along.partition_point(|other| part(other) == Part::Node);
+            let inside = off.partition_point(|other| part(other) == Part::Boundary);
+            self.following.push([nodes, along.len() + inside].map(few));
+            start = *end;
+        }
     }
 
-    pub(super) fn part(&self, point: usize) -> Part {
-        match self.along_lines[point] {
-            0 => Part::Boundary,
-            2 => Part::Line,
-            _ => Part::Node,
-        }
+    pub(super) fn count(&self) -> usize {
+        self.along_lines.len()
     }
 
     /// All neighbours.
@@ -80,27 +94,49 @@ impl Graph {
         &self.neighbors[self.starts[point]..self.starts[point + 1]]
     }
 
-    /// Those along lines, and the others.
-    fn along_and_off(&self, point: usize) -> (&[u32], &[u32]) {
-        self.beside(point).split_at(usize::from(self.along_lines[point]))
-    }
-
     /// Those whose mean a point is to be: of a point of a line the two along it, of a point inside a boundary all; none of others.
     pub(super) fn followed(&self, point: usize) -> &[u32] {
-        match self.part(point) {
+        match part(self.along_lines[point]) {
             Part::Boundary => self.beside(point),
-            Part::Line => self.along_and_off(point).0,
+            Part::Line => &self.beside(point)[..2],
             Part::Node => &[],
         }
     }
 
-    /// Those that follow a point: along a line all but its ends, beside it those inside boundaries.
-    pub(super) fn followers(&self, point: usize) -> impl Iterator<Item = u32> {
-        let (along, off) = self.along_and_off(point);
-        let part = |other: &u32| self.part(*other as usize);
-        let along = along.iter().filter(move |other| part(other) != Part::Node);
-        along.chain(off.iter().filter(move |other| part(other) == Part::Boundary)).copied()
+    /// Whether a point follows those along a line.
+    pub(super) fn is_on_line(&self, point: usize) -> bool {
+        part(self.along_lines[point]) == Part::Line
     }
+
+    /// The neighbours of all points, one point after the other.
+    pub(super) fn neighbors(&self) -> &[u32] {
+        &self.neighbors
+    }
+
+    /// The first neighbour of a point, among those of all.
+    pub(super) fn first_neighbor(&self, point: usize) -> usize {
+        self.starts[point]
+    }
+
+    /// Which of its neighbours follow a point: along a line all but its ends, beside it those inside boundaries.
+    pub(super) fn followers_among_neighbors(&self, point: usize) -> Range<u8> {
+        let [first, end] = self.following[point];
+        first..end
+    }
+}
+
+/// The part of a point with so many neighbours along lines.
+fn part(along_lines: u8) -> Part {
+    match along_lines {
+        0 => Part::Boundary,
+        2 => Part::Line,
+        _ => Part::Node,
+    }
+}
+
+/// A number of neighbours.
+pub(super) fn few(count: usize) -> u8 {
+    u8::try_from(count).expect("a point of the lattice has six edges, each with two sheets at most")
 }
 
 /// Adds the neighbours of a point, and returns how many are along lines.
@@ -125,7 +161,7 @@ fn around_squares(
     neighbors.extend(edges().filter(|at| !is_inside(at)).map(|at| at[0].0));
     let along = neighbors.len() - before;
     neighbors.extend(edges().filter(|at| is_inside(at)).map(|at| at[0].0));
-    u8::try_from(along).expect("a point of the lattice has six edges, each with two sheets at most")
+    few(along)
 }
 
 /// As [`around_squares`].

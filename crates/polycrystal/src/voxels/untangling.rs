@@ -57,8 +57,8 @@ impl Neighbors<'_> {
 impl Untangling<'_> {
     /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
     ///
-    /// Folds stay where grains are one voxel thick: a plate has a rim.
-    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
+    /// Folds stay where grains are one voxel thick: a plate has a rim. Returns also how many do.
+    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> (Vec<DVec3>, usize) {
         let surface = self.search.surface(&[]);
         let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
         let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface) };
@@ -80,7 +80,7 @@ impl Untangling<'_> {
             }
             best = tried;
         }
-        best.points
+        (best.points, best.folds.len())
     }
 
     /// Points of elements that cross go half the way home, and stay there while the others restore the volumes.
