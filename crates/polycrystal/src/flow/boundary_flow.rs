@@ -272,7 +272,8 @@ impl<'a> Flow<'a> {
         let is_growth_in_plane =
             self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
         if !is_growth_in_plane {
-            self.groups = groups;
+            let level = &self.network.levels()[self.level];
+            self.groups = groups.without_grown_at_walls(&self.groups, level, |point| self.freedom(point));
         }
         Ok(terms.energy)
     }

@@ -35,6 +35,35 @@ impl TiedPoints {
         Self(DisjointSets::new(count))
     }
 
+    /// All but the groups that walls hold to a line or altogether, and that had some of their points before and now have more: they break what is around, which moves on, and would grow
+    /// until nothing there moves.
+    pub(crate) fn without_grown_at_walls(
+        &self,
+        before: &Self,
+        level: &Level,
+        of_point: impl Fn(u32) -> Freedom,
+    ) -> Self {
+        let mut left = Self::new(level);
+        let [own, known] = [left.sizes(), before.sizes()];
+        for group in self.0.of_several() {
+            let was_tied = group.iter().any(|point| known[*point as usize] > own[*point as usize]);
+            let has_grown = was_tied && known[group[0] as usize] < group.len();
+            let is_held = matches!(freedom(&group, &of_point), Freedom::Along(_) | Freedom::Nowhere);
+            if !(has_grown && is_held) {
+                left.join_all(&group);
+            }
+        }
+        left
+    }
+
+    /// The number of points in the group of each point.
+    fn sizes(&self) -> Vec<usize> {
+        let (numbers, count) = self.0.numbers();
+        let mut sizes = vec![0; count as usize];
+        numbers.iter().for_each(|number| sizes[*number as usize] += 1);
+        numbers.iter().map(|number| sizes[*number as usize]).collect()
+    }
+
     /// Makes some control points move as one.
     pub(crate) fn join_all(&mut self, points: &[u32]) {
         points.windows(2).for_each(|pair| self.0.join(pair[0], pair[1]));
