@@ -506,6 +506,15 @@ class MapOptions(TypedDict, total=False):
 
     Example of the command line: ``grainsmooth smooth map.vti --fit-cells -o twin.vtp``"""
 
+    levels: Value
+    """Times that boundaries are subdivided in the end; each time, a triangle becomes four (in the plane, a segment two)
+
+    The points that boundaries had before stay where they are, but for what gives grains their volumes again.
+
+    Example of the command line: ``grainsmooth smooth map.vti --decimate 3 -n 2``
+
+    Default: ``0``"""
+
     relax: Value
     """Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to
     `equilibrium`; grains keep their volumes [default: 0]

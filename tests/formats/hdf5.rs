@@ -7,7 +7,7 @@ use glam::DVec3;
 use grainsmooth::polycrystal::{GrainId, certify};
 use grainsmooth::{EbsdOptions, LabelledFile, MapOptions, MeasuredMap, read_map};
 
-use crate::maps::refused_when_damaged;
+use crate::maps::{refused_in_200_ways, refused_when_damaged};
 use crate::programs::run;
 
 const LABELS: [&str; 3] = ["labels_6.dream3d", "labels_nx.dream3d", "labels_dct.h5"];
@@ -163,6 +163,15 @@ fn damaged_hdf5_is_read_or_refused() {
         LABELS.into_iter().chain(POINTS).chain(["points.cpr", "sections.h5ebsd", "sections_hkl.h5ebsd"])
     {
         let refused = refused_when_damaged(&folder.path().join(name));
+        assert!(refused > 40, "{name}: {refused}");
+    }
+    for name in ["triangles_6.dream3d", "triangles_nx.dream3d"] {
+        let refused = refused_in_200_ways(&folder.path().join(name), |path| {
+            let file = LabelledFile::read(path)?;
+            // Judged, good or not.
+            certify(&file.surface(), &file.expected());
+            Ok(())
+        });
         assert!(refused > 40, "{name}: {refused}");
     }
 }

@@ -83,6 +83,7 @@ pub use network::junctions::Junctions;
 pub use relax::cells::relax_cells;
 #[doc(hidden)]
 pub use relax::cells::relax_cells_tuned;
+pub use relax::fitted_levels::Subdivided;
 #[doc(hidden)]
 pub use relax::regular_cells::regular_cells_tuned;
 pub use relax::regular_cells::{RegularCells, regular_cells};

@@ -9,6 +9,7 @@
 //! First the control points move, then those of level 1, which start where subdivision puts them.
 
 pub(crate) mod cells;
+pub(crate) mod fitted_levels;
 pub(crate) mod regular_cells;
 
 use glam::DVec3;

@@ -13,9 +13,14 @@ use grainsmooth::cli::{SmoothArguments, usage};
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
     let mut stages = vec![Stage::Map, Stage::Network, Stage::Writing];
-    if arguments.network.relaxation().is_some() {
-        stages.splice(2..2, [Stage::Relaxation, Stage::Validation]);
-    }
+    let network = &arguments.network;
+    let is_relaxed = network.relaxation().is_some();
+    let after = [
+        (Stage::Relaxation, is_relaxed),
+        (Stage::Validation, is_relaxed),
+        (Stage::Subdivision, network.levels > 0),
+    ];
+    stages.splice(2..2, after.into_iter().filter(|(_, is_asked)| *is_asked).map(|(stage, _)| stage));
     show_run(&arguments.result.shared, stages, |progress| smooth(arguments, progress))
 }
 
@@ -25,7 +30,7 @@ fn smooth(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String,
     let start = Instant::now();
     progress(Stage::Map, 0, 1);
     if LabelledFile::is_known(path) {
-        return relax(arguments, progress);
+        return refine(arguments, progress);
     }
     let measured = read_map(path, options)?;
     let read_in = start.elapsed();
@@ -41,20 +46,20 @@ fn smooth(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String,
     files.fill_and_write(smooth_map(path, measured, run, progress)?, progress)
 }
 
-/// Relaxes a network.
-fn relax(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String, Error> {
+/// Relaxes and subdivides a network.
+fn refine(arguments: &SmoothArguments, progress: Progress<'_>) -> Result<String, Error> {
     let SmoothArguments { map: path, options, network, result } = arguments;
     if let Some(option) = options.first_given().or(network.first_of_maps()) {
         return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
     }
-    let Some(relaxation) = network.relaxation() else {
+    if network.relaxation().is_none() && network.levels == 0 {
         return Err(usage(&format!(
-            "{} is a network already; give --relax, such as --relax equilibrium",
+            "{} is a network already; give --relax, such as --relax equilibrium, or -n",
             path.display()
         )));
-    };
+    }
     let given = LabelledFile::read(path)?;
     progress(Stage::Network, 0, 1);
     let (files, polycrystal) = ResultFiles::of_network(result, path, &given, false)?;
-    files.fill_and_write(polycrystal.relaxed(path, relaxation, progress)?, progress)
+    files.fill_and_write(polycrystal.refined(path, network, progress)?, progress)
 }

@@ -4,6 +4,7 @@ use clap::Args;
 use polycrystal::Relaxation;
 
 use crate::config::settings::parse_relaxation;
+use crate::spelling::whole_number;
 
 /// What the network of a map is to be like.
 #[derive(Debug, Clone, Default, Args)]
@@ -24,6 +25,14 @@ pub struct MapNetworkOptions {
     /// Example: grainsmooth smooth map.vti --fit-cells -o twin.vtp
     #[arg(long, conflicts_with = "decimate")]
     pub fit_cells: bool,
+
+    /// Times that boundaries are subdivided in the end; each time, a triangle becomes four (in the plane, a segment two)
+    ///
+    /// The points that boundaries had before stay where they are, but for what gives grains their volumes again.
+    ///
+    /// Example: grainsmooth smooth map.vti --decimate 3 -n 2
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 0, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true)]
+    pub levels: u32,
 
     /// Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to `equilibrium`; grains keep their volumes [default: 0]
     ///

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use glam::BVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::{
-    Certified, GrainId, Junctions, NetworkError, Relaxation, RelaxationStep, SmoothedVoxels, Volumes,
-    VoxelLabel, VoxelOptions, Voxels, herring_residual, relax_certified, smooth_voxels, validate,
+    Certificate, Certified, GrainId, Junctions, Level, Mesh, NetworkError, Relaxation, RelaxationStep,
+    SmoothedVoxels, Subdivided, Volumes, VoxelLabel, VoxelOptions, Voxels, herring_residual, relax_certified,
+    smooth_voxels, validate,
 };
 
 use super::fitted_cells::{FittedCells, fitted_cells};
@@ -15,6 +16,7 @@ use super::origin::{Measurement, Origin, SmoothedMap};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use crate::maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap};
+use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
 use crate::{
     Error, FileOptions, GrainAttributes, GrainPhases, GrainTexture, MapNetworkOptions, MeasuredAttributes,
 };
@@ -99,40 +101,71 @@ pub fn smooth_map(
         folds: certificate.faults.0.len(),
     };
     let smooth = Polycrystal::measured(measurement, network, points, certificate, times);
-    match run.network.relaxation() {
-        Some(relaxation) => smooth.relaxed(path, relaxation, progress),
-        None => Ok(smooth),
-    }
+    smooth.refined(path, &run.network, progress)
 }
 
 impl Polycrystal {
-    /// The grains of a map or of a given network with boundaries nearer to the equilibrium of their tension. `path` is where they come from. Volumes and neighbours stay.
+    /// The grains of a map or of a given network with boundaries nearer to the equilibrium of their tension, then subdivided, as far as that is asked for. `path` is where they come
+    /// from. Volumes and neighbours stay.
     ///
     /// # Errors
-    /// [`Error::NetworkOfMap`] where boundaries cannot move so far without folds or crossings.
-    pub fn relaxed(
+    /// [`Error::NetworkOfMap`] where boundaries cannot move so far without folds or crossings, and [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) or
+    /// [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
+    pub fn refined(
         mut self,
         path: &Path,
-        relaxation: Relaxation,
+        options: &MapNetworkOptions,
         progress: Progress<'_>,
     ) -> Result<Self, Error> {
         let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
+        if let Some(relaxation) = options.relaxation() {
+            self.relax(relaxation, progress).map_err(failed)?;
+        }
+        if options.levels > 0 {
+            let control_mesh = ControlMesh { is_still: true, ..size(self.network.control_mesh()).into() };
+            check_levels(control_mesh, options.levels, available_memory())?;
+            progress(Stage::Subdivision, 0, 1);
+            let start = Instant::now();
+            let subdivided = self.network.subdivided(&self.points, options.levels as usize);
+            let Subdivided { network, points, certificate } = subdivided.map_err(failed)?;
+            self.network = network;
+            self.set_points(points, certificate);
+            self.add_time(Stage::Subdivision, start.elapsed());
+        }
+        Ok(self)
+    }
+
+    /// Moves points toward equilibrium.
+    fn relax(&mut self, relaxation: Relaxation, progress: Progress<'_>) -> Result<(), NetworkError> {
         progress(Stage::Relaxation, 0, 1);
         let start = Instant::now();
         let tell = |step: RelaxationStep<'_>| progress(Stage::Relaxation, step.done, step.count);
         let relaxed = relax_certified(&self.network, &self.points, &relaxation, Volumes::Kept, tell);
-        let (relaxed, Certified { points, validation, validated_in }) = relaxed.map_err(failed)?;
+        let (relaxed, Certified { points, validation, validated_in }) = relaxed?;
         self.add_time(Stage::Relaxation, start.elapsed().saturating_sub(validated_in));
         let start = Instant::now();
+        self.attempts.extend(relaxed.given_up);
+        self.set_points(points, validation);
+        self.add_time(Stage::Validation, validated_in + start.elapsed());
+        Ok(())
+    }
+
+    fn set_points(&mut self, points: Vec<DVec3>, validation: Certificate) {
+        if let Origin::Measured(measurement) = &mut self.origin {
+            measurement.folds = validation.faults.0.len();
+        }
         (self.points, self.validation) = (points, validation);
         self.residual = herring_residual(&self.network, &self.points);
-        self.attempts.extend(relaxed.given_up);
-        if let Origin::Measured(measurement) = &mut self.origin {
-            measurement.folds = 0;
-        }
-        self.add_time(Stage::Validation, validated_in + start.elapsed());
-        Ok(self)
     }
+}
+
+fn size(level: &Level) -> LevelSize {
+    let (edges, triangles) = match &level.mesh {
+        Mesh::Triangles(mesh) => (mesh.edge_count(), level.element_count()),
+        Mesh::Segments(mesh) => (mesh.segments().len(), 0),
+    };
+    let [points, edges, triangles] = [level.vertex_count(), edges, triangles].map(|count| count as u128);
+    LevelSize { points, edges, triangles }
 }
 
 /// What the map tells of each grain.

@@ -79,6 +79,10 @@ pub struct SummaryRecord {
     /// The same unit; none in the plane.
     triangle_angles: Option<TriangleAngles>,
     largest_relative_volume_error: f64,
+    /// Pairs of elements that fold back on each other, as in grains of a map that are one voxel thick.
+    folds: usize,
+    /// Of a map: those that got another label, because a grain touched itself there.
+    relabelled_voxels: usize,
     seconds: BTreeMap<&'static str, f64>,
     written: Vec<PathBuf>,
 }
@@ -179,7 +183,8 @@ impl SummaryRecord {
     /// The numbers of a result and the files that it was written to.
     pub fn new(polycrystal: &Polycrystal, written: Vec<PathBuf>) -> Self {
         let (network, provenance) = (&polycrystal.network, polycrystal.provenance());
-        let synthesis = polycrystal.synthesis();
+        let (synthesis, measurement) = (polycrystal.synthesis(), polycrystal.measurement());
+        let map = measurement.and_then(|measurement| measurement.map.as_ref());
         let reconnected = synthesis.and_then(|made| made.reconnected);
         let finest = network.finest();
         let junctions = network.junction_counts();
@@ -222,7 +227,7 @@ impl SummaryRecord {
                 .as_ref()
                 .map_or_else(Vec::new, |parents| parents.patterns().to_vec()),
             regularization: synthesis.map(|made| made.regularization.name()),
-            fitted_cells: polycrystal.measurement().and_then(|measured| measured.map.as_ref()?.fit),
+            fitted_cells: map.and_then(|map| map.fit),
             regularization_fell_back: synthesis
                 .is_some_and(|made| made.regularization.fell_back(&made.config)),
             collapsed_edges: synthesis.map_or(0, |made| made.collapsed.edges),
@@ -256,6 +261,8 @@ impl SummaryRecord {
             angles_after: polycrystal.validation.angles.map(Spread::from),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
             largest_relative_volume_error: polycrystal.validation.largest_volume_error,
+            folds: measurement.map_or(0, |measurement| measurement.folds),
+            relabelled_voxels: map.map_or(0, |map| map.relabelled),
             seconds: seconds.collect(),
             written,
         }
