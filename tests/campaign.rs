@@ -3,12 +3,13 @@
 
 use std::path::PathBuf;
 
-use campaign::{Limits, Outcome, Record, Slice, Summary, run_slice};
+use campaign::{Limits, Outcome, Record, Slice, Subject, Summary, run_slice};
 
 #[test]
 fn sixty_random_runs_end_without_panic_invalid_result_or_leftover() {
     let slice = Slice {
         program: PathBuf::from(env!("CARGO_BIN_EXE_grainsmooth")),
+        subject: Subject::Seeds,
         seed: 17,
         from: 0,
         runs: 60,
@@ -24,4 +25,23 @@ fn sixty_random_runs_end_without_panic_invalid_result_or_leftover() {
     let good = records.iter().filter(|record| record.outcome == Outcome::Good);
     let certified = good.filter(|record| record.volume_error.is_some_and(|error| error <= 1e-9)).count();
     assert!(certified >= 20, "{}", Summary(&records));
+}
+
+#[test]
+fn fifty_random_maps_end_without_panic_invalid_result_or_leftover() {
+    let slice = Slice {
+        program: PathBuf::from(env!("CARGO_BIN_EXE_grainsmooth")),
+        subject: Subject::Maps,
+        seed: 17,
+        from: 0,
+        runs: 50,
+        limits: Limits::USUAL,
+        keep: None,
+    };
+    let records = run_slice(&slice, |_| Ok(())).unwrap();
+    let bad: Vec<&Record> = records.iter().filter(|record| record.is_unacceptable()).collect();
+    assert!(bad.is_empty(), "{bad:#?}\n{}", Summary(&records));
+    let good = records.iter().filter(|record| record.outcome == Outcome::Good);
+    let certified = good.filter(|record| record.volume_error.is_some_and(|error| error <= 1e-9)).count();
+    assert!(certified >= 30, "{}", Summary(&records));
 }

@@ -84,6 +84,13 @@ fn recipes_do_what_they_say() {
     for (_, text) in blocks {
         text.lines().for_each(|line| run_command(line, folder.path()));
     }
+    // Forces at the side of the EBSD map that is pulled, where CalculiX is there: they pull.
+    if let Ok(printed) = std::fs::read_to_string(folder.path().join("map.tension-x.dat")) {
+        let rows = printed.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+        let along_x: Vec<f64> =
+            rows.filter(|row| row.len() == 4).filter_map(|row| row[1].parse().ok()).collect();
+        assert!(along_x.len() > 5 && along_x.iter().sum::<f64>() > 0.0, "{printed}");
+    }
 }
 
 /// Every command of the page on finite elements, its jobs and its Python, where Gmsh is there to fill grains. A job begins with its name; what is for programs that cannot be installed is

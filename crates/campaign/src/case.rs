@@ -37,11 +37,13 @@ pub enum AngleClass {
     Remeshed,
     /// In the plane, where there are no triangles.
     Plane,
+    /// Of measured maps: where edges collapse, some triangles stay thin.
+    Measured,
 }
 
 impl AngleClass {
     /// All classes, in a few words.
-    pub const ALL: [(Self, &'static str); 8] = [
+    pub const ALL: [(Self, &'static str); 9] = [
         (Self::Walls, "walls"),
         (Self::Periodic, "periodic"),
         (Self::Cut, "cut at the box"),
@@ -50,14 +52,30 @@ impl AngleClass {
         (Self::Unregularized, "flat or not regularized"),
         (Self::Remeshed, "remeshed"),
         (Self::Plane, "plane"),
+        (Self::Measured, "measured maps"),
     ];
+}
+
+/// What the network of a map promises.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapPromise {
+    /// The map's file or folder.
+    pub name: String,
+    /// The words that tell how it is read.
+    pub options: Vec<String>,
+    /// Whether thin grains may be folded.
+    pub may_fold: bool,
+    /// Whether the middle of every voxel lies in the grain of its label.
+    pub is_exact: bool,
 }
 
 /// A run before it runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// How its seeds are placed, or the mistake.
+    /// How its seeds are placed, what its map is like, or the mistake.
     pub kind: String,
+    /// Words before the options.
+    pub command: Vec<String>,
     /// Options on the command line.
     pub options: Options,
     /// Files that stand in its directory beforehand: name and content.
@@ -68,6 +86,8 @@ pub struct Case {
     pub promise: Promise,
     /// Whether relaxation keeps the volumes of the cells.
     pub keeps_volumes: bool,
+    /// What it promises beside that, where it smooths a map.
+    pub map: Option<MapPromise>,
     /// Two or three.
     pub dimension: usize,
     /// What its angles are counted with.

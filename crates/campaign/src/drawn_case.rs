@@ -49,12 +49,14 @@ impl Case {
         inclusions(draw, arrangement, dimension, &mut options, &mut promise);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
+            command: Vec::new(),
             keeps_volumes: !options.has("free"),
             angles: angle_class(&domain, &options),
             options,
             files,
             mistake: None,
             promise,
+            map: None,
             dimension,
         };
         if draw.chance(MISTAKES) {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
-use campaign::{Limits, Record, Slice, Summary, run_slice};
+use campaign::{Limits, Record, Slice, Subject, Summary, run_slice};
 use clap::Parser;
 
 /// Run grainsmooth at random and certify each result
@@ -23,6 +23,12 @@ struct Arguments {
     /// Seed of the campaign
     #[arg(long, required_unless_present = "summarize")]
     seed: Option<u64>,
+
+    /// Draw measured maps for `grainsmooth smooth` instead of seeds
+    ///
+    /// Example: --maps --seed 7
+    #[arg(long)]
+    maps: bool,
 
     /// Index of the first run
     ///
@@ -89,6 +95,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<Vec<Record>> {
         .with_context(|| arguments.results.display().to_string())?;
     let slice = Slice {
         program,
+        subject: if arguments.maps { Subject::Maps } else { Subject::Seeds },
         seed: arguments.seed.unwrap_or_default(),
         from: arguments.from,
         runs: arguments.runs,

@@ -77,7 +77,7 @@ impl Record {
         let is_thin = self.least_angle.is_some_and(|angle| angle < THIN);
         !matches!(self.outcome, Outcome::Good | Outcome::Refused)
             || self.is_unacceptable()
-            || is_thin && self.angle_class != AngleClass::Unregularized
+            || is_thin && ![AngleClass::Unregularized, AngleClass::Measured].contains(&self.angle_class)
     }
 }
 

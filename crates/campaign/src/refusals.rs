@@ -86,6 +86,16 @@ pub const REFUSALS: &[Kind] = &[
     // Lines that are to be kept however short they are, and grains far smaller than the others.
     ("KeptShortLines", &["; without --regularize 0,", "it works"]),
     ("TinyGrain", &["too small beside the others", "merge such cells with --min-diameter"]),
+    // Measured maps.
+    ("MapProblem::Unfit", &["has voxels without a grain, and cells fill a box"]),
+    ("MapProblem::NoCells", &["cells cannot be fitted to its grains"]),
+    ("MapProblem::Unfit, small grains", &["or more voxels besides the exterior; lower --min-voxels"]),
+    ("MapProblem::Unfit, no confidence", &["its points have no confidence index; leave --min-ci out"]),
+    ("MapProblem::Unfit, sections", &["has sections that share no place after they are aligned"]),
+    ("NoGrain", &["no voxel has the label of a grain"]),
+    ("ShortPeriod", &["where it repeats; at least", "are needed there"]),
+    ("EndlessGrain", &["meets its own image through the sides", "or take a larger map"]),
+    ("PeriodicPores", &["a map that repeats has no exterior", "or leave the periods out"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
     ("GrainVanished, at any time", &["shrinks to nothing by", "--min-diameter"]),

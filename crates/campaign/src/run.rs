@@ -13,11 +13,22 @@ use crate::process::{self, Ended};
 use crate::record::{Outcome, Record};
 use crate::refusals::refusal;
 
+/// What is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// Seeds, and what becomes of their cells.
+    Seeds,
+    /// Measured maps for `grainsmooth smooth`.
+    Maps,
+}
+
 /// A slice of a campaign.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slice {
     /// The program to run.
     pub program: PathBuf,
+    /// What is drawn.
+    pub subject: Subject,
     /// The campaign's seed.
     pub seed: u64,
     /// Index of the first run.
@@ -49,13 +60,16 @@ pub fn run_slice(
 
 /// Runs one case and judges it.
 fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
-    let case = Case::draw(slice.seed, index, slice.limits);
+    let case = match slice.subject {
+        Subject::Seeds => Case::draw(slice.seed, index, slice.limits),
+        Subject::Maps => Case::draw_map(slice.seed, index),
+    };
     let directory = TempDir::new()?;
     for (name, content) in &case.files {
         put(&directory.path().join(name), content)?;
     }
     let before = content(directory.path())?;
-    let words = case.options.words();
+    let words = [case.command.clone(), case.options.words()].concat();
     let ended = process::run(&slice.program, &words, directory.path())?;
     let left: Vec<String> = match ended.code {
         0 => strangers(&case, &before, &content(directory.path())?),
