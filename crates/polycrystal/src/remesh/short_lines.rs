@@ -117,8 +117,8 @@ impl ShortLines {
         for (length, line) in short {
             let ends = skeleton.lines[line as usize].ends();
             let places = skeleton.occurrences.iter().filter(|occurrence| occurrence.line == line);
-            let Some((staying, along_line)) = staying_end(network, level, places) else { continue };
-            let [stays, goes] = if staying == Some(End::Last) { [ends[1], ends[0]] } else { ends };
+            let Some(along_line) = sides_along(level, places) else { continue };
+            let [stays, goes] = ends;
             let [kept, gone] = [stays, goes].map(|vertex| torus.vertices[vertex as usize]);
             let has_merged = |end: Moved<u32>| {
                 found.gone.contains_key(&end.original) || found.places.contains_key(&end.original)
@@ -143,10 +143,7 @@ impl ShortLines {
                 continue;
             }
             parts.iter().for_each(|(part, _)| line_counts[*part as usize] -= 1);
-            let place = match staying {
-                Some(_) => points[stays as usize],
-                None => skeleton.lines[line as usize].middle(points),
-            };
+            let place = skeleton.lines[line as usize].middle(points);
             let back = kept.translation.vector(network.domain());
             found.lines.insert(line);
             found.places.insert(kept.original, place - back);
@@ -201,42 +198,20 @@ impl ShortLines {
     }
 }
 
-/// An end of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    First,
-    Last,
-}
-
-/// The end of a line that has to stay in its place because it lies on more walls than the other, or none, and the number of sides along the line. Nothing where the line may not become a point: its
-/// ends lie on walls, or at pores, that it does not lie on.
-fn staying_end<'a>(
-    network: &Network,
-    level: &Level,
-    places: impl Iterator<Item = &'a Occurrence>,
-) -> Option<(Option<End>, u8)> {
-    let sets = network.wall_sets();
-    let (mut staying, mut sides) = (None, 0);
+/// How many sides meet along a line, where that may become a point: it and its ends lie on the same walls, and at pores all or none. Were an end drawn to a wall, what is near could come to
+/// lie flat on that.
+fn sides_along<'a>(level: &Level, places: impl Iterator<Item = &'a Occurrence>) -> Option<u8> {
+    let mut sides = 0;
     for Occurrence { vertices, walls, meeting, .. } in places {
         let ends = [vertices[0], vertices[vertices.len() - 1]].map(|end| end as usize);
-        let of_ends = ends.map(|end| level.walls[end]);
+        let is_along_walls = ends.iter().all(|end| level.walls[*end] == *walls);
         let is_outer = ends.map(|end| level.node_types[end].is_outer());
-        let [first, last] = of_ends.map(|set| sets.walls(set));
-        let is_within = |one: &[_], other: &[_]| one.iter().all(|wall| other.contains(wall));
-        let both = first.iter().filter(|wall| last.contains(wall)).count();
-        let is_along_walls =
-            both == sets.walls(*walls).len() && meeting.node_type.is_outer() == (is_outer == [true; 2]);
+        if !is_along_walls || meeting.node_type.is_outer() != (is_outer == [true; 2]) {
+            return None;
+        }
         sides = sides.max(meeting.sides);
-        let end = match (is_within(last, first), is_within(first, last)) {
-            _ if !is_along_walls => return None,
-            (true, true) => continue,
-            (true, false) => End::First,
-            (false, true) => End::Last,
-            (false, false) => return None,
-        };
-        staying = Some(end);
     }
-    Some((staying, sides))
+    Some(sides)
 }
 
 /// How many sides meet at a node.

@@ -178,7 +178,7 @@ fn euler_numbers(network: &Network) -> Vec<i64> {
 #[test]
 fn short_lines_become_points_and_grains_stay_balls() {
     for periods in [BVec3::FALSE, BVec3::new(true, true, false), BVec3::TRUE] {
-        let (network, flat) = regular_network(&Domain::unit_cube().with_periods(periods), 20, 3, 2);
+        let (network, flat) = regular_network(&Domain::unit_cube().with_periods(periods), 40, 3, 2);
         let points = relaxed(&network, &flat);
         let keeping = size(&network, 1.2);
         let merging = ElementSize { merges_short_lines: true, ..keeping };
@@ -209,7 +209,7 @@ fn short_lines_of_cut_boxes_become_points_where_nothing_folds() {
     let BoxCut { network: cut, points, .. } =
         network.cut_at_box(&relaxed(&network, &flat), false).expect("cut");
     let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
-    let size = ElementSize { merges_short_lines: true, ..size(&network, 4.0) };
+    let size = ElementSize { merges_short_lines: true, ..size(&network, 1.5) };
     let remeshed = cut.remeshed(&points, &size, BVec3::TRUE).expect("remeshed");
     assert!(!remeshed.merged.is_empty());
     assert!(remeshed.certificate.largest_volume_error < 1e-9);
