@@ -170,8 +170,9 @@ pub fn smooth_voxels_tuned(
             match network(&decimated) {
                 Ok(found) if count(&found) <= folds => return Ok(found),
                 Ok(found) => {
-                    if best.as_ref().is_some_and(|best| count(best) <= count(&found)) {
-                        break;
+                    // A second surface has few of these folds left, and each takes as long as all that went before.
+                    if let Some(best) = best {
+                        return Ok(if count(&found) < count(&best) { found } else { best });
                     }
                     let sides = found.network.sides();
                     let surface = Surface::of_level(found.network.finest(), &found.points, &sides);
