@@ -17,6 +17,7 @@ mod good_runs;
 mod grain_shapes;
 mod inside;
 mod map_agreement;
+mod map_remedies;
 mod maps;
 mod measure;
 mod measured_levels;

@@ -5,6 +5,8 @@ use std::process::Output;
 
 use campaign::{REFUSALS, refusal};
 
+use crate::map_remedies;
+
 use super::workplace::{FAILED, Workplace};
 
 /// A file and what it holds; a name that ends in a slash is that of a directory.
@@ -23,8 +25,8 @@ const BEYOND: [&str; 3] = [
 ];
 
 /// Those of which the remedy is not tried here. Tests of their own try numbers in a message, files that are no text and read-only ones;
-/// that of a map of other crystals is not tried.
-const NOT_HERE: [&str; 11] = [
+/// those of a map of other crystals, and of sections that share no place, are not tried. Those of most maps are in `map_remedies`.
+const NOT_HERE: [&str; 13] = [
     "LevelsExceedMemory",
     // Without relaxation grains have no places.
     "NoPlace",
@@ -38,6 +40,8 @@ const NOT_HERE: [&str; 11] = [
     "GrainVanished, at any time",
     "SeedProblem::NotUtf8",
     "OutputNotWritable",
+    "MapProblem::Unfit, no confidence",
+    "MapProblem::Unfit, sections",
 ];
 
 const TESS: &str = include_str!("../formats/one_cell.tess");
@@ -465,7 +469,9 @@ fn what_messages_advise_helps() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     for (kind, _) in REFUSALS {
         let tried = REMEDIES.iter().any(|remedy| remedy.0 == *kind);
-        let elsewhere = BEYOND.contains(kind) || NOT_HERE.contains(kind);
+        let elsewhere = BEYOND.contains(kind)
+            || NOT_HERE.contains(kind)
+            || map_remedies::kinds().any(|of_maps| of_maps == *kind);
         assert!(tried != elsewhere, "{kind}");
     }
 }

@@ -58,6 +58,7 @@ pub const REFUSALS: &[Kind] = &[
     ("VolumeCount", &["volumes for", "seeds; give one for each"]),
     // Seeds and domains.
     ("OutsideDomain", &["lies outside the domain"]),
+    ("MapProblem::NoCells", &["cells cannot be fitted to its grains", "leave --fit-cells out"]),
     ("DuplicateSeeds", &["have the same position", "remove one of them"]),
     ("DuplicateSeedsInFile", &["the same seed", "twice; remove one of them"]),
     ("EmptyGrains", &["weights leave", "without volume", "--drop-empty"]),
@@ -88,11 +89,9 @@ pub const REFUSALS: &[Kind] = &[
     ("TinyGrain", &["too small beside the others", "merge such cells with --min-diameter"]),
     // Measured maps.
     ("MapProblem::Unfit", &["has voxels without a grain, and cells fill a box"]),
-    ("MapProblem::NoCells", &["cells cannot be fitted to its grains"]),
     ("MapProblem::Unfit, small grains", &["or more voxels besides the exterior; lower --min-voxels"]),
     ("MapProblem::Unfit, no confidence", &["its points have no confidence index; leave --min-ci out"]),
     ("MapProblem::Unfit, sections", &["has sections that share no place after they are aligned"]),
-    ("NoGrain", &["no voxel has the label of a grain"]),
     ("ShortPeriod", &["where it repeats; at least", "are needed there"]),
     ("EndlessGrain", &["meets its own image through the sides", "or take a larger map"]),
     ("PeriodicPores", &["a map that repeats has no exterior", "or leave the periods out"]),

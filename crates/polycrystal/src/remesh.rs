@@ -15,6 +15,7 @@ mod patch;
 mod plane;
 mod reference;
 mod shaping;
+mod short_line_search;
 mod short_lines;
 mod size_field;
 mod skeleton;

@@ -190,7 +190,7 @@ pub enum MapProblem {
         other: String,
     },
     /// No power diagram has the volumes of the grains at their centroids.
-    #[error("cells cannot be fitted to its grains: {0}")]
+    #[error("cells cannot be fitted to its grains, leave --fit-cells out: {0}")]
     NoCells(VolumesError),
     /// No grain is left.
     #[error(

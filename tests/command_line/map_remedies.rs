@@ -1,0 +1,45 @@
+//! What messages about measured maps advise helps.
+
+use campaign::refusal;
+
+use crate::maps::npy;
+use crate::workplace::Workplace;
+
+/// A map in the plane.
+struct Map {
+    shape: [usize; 2],
+    labels: &'static [u8],
+}
+
+const TWO: Map = Map { shape: [2, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2] };
+const WITH_PORE: Map = Map { shape: [4, 3], labels: &[0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 2] };
+const RING: Map = Map { shape: [3, 3], labels: &[2, 2, 2, 2, 1, 2, 2, 2, 2] };
+const BANDS: Map = Map { shape: [4, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2] };
+const ISLAND: Map = Map { shape: [4, 4], labels: &[1, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1] };
+
+/// A kind of refusal, a map, the options that are refused, and those after the remedy.
+const REMEDIES: [(&str, Map, &str, &str); 6] = [
+    ("MapProblem::Unfit", WITH_PORE, "--exterior-label 0 --fit-cells", "--exterior-label 0"),
+    ("MapProblem::NoCells", RING, "--fit-cells", ""),
+    ("MapProblem::Unfit, small grains", TWO, "--min-voxels 5", "--min-voxels 4"),
+    ("ShortPeriod", TWO, "--periodic x", ""),
+    ("EndlessGrain", BANDS, "--periodic x,y", "--periodic y"),
+    ("PeriodicPores", ISLAND, "--exterior-label 0 --periodic x,y", "--exterior-label 0"),
+];
+
+/// The kinds of which the remedy is tried here.
+pub fn kinds() -> impl Iterator<Item = &'static str> {
+    REMEDIES.iter().map(|(kind, ..)| *kind)
+}
+
+#[test]
+fn what_messages_about_maps_advise_helps() {
+    for (kind, Map { shape, labels }, refused, mended) in &REMEDIES {
+        let workplace = Workplace::new();
+        workplace.put("map.npy", npy(shape, labels));
+        let output = workplace.command(&format!("smooth map.npy {refused} -o a.vtp")).assert().failure();
+        let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+        assert_eq!(refusal(&said), Some(*kind), "{said}");
+        workplace.run(&format!("smooth map.npy {mended} -o a.vtp"));
+    }
+}
