@@ -38,14 +38,7 @@ fn workplace() -> Workplace {
 
 /// An array of whole numbers as NumPy writes it, the last index fastest.
 pub fn npy(shape: &[usize], labels: &[u8]) -> Vec<u8> {
-    let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
-    let mut header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({shape}), }}");
-    header.extend(std::iter::repeat_n(' ', 117 - header.len()));
-    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    bytes.extend(header.as_bytes());
-    bytes.push(b'\n');
-    bytes.extend(labels);
-    bytes
+    campaign::npy(shape, labels, false)
 }
 
 #[test]

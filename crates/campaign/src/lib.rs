@@ -25,6 +25,7 @@ mod seeds;
 pub use case::{AngleClass, Case, Limits, MapPromise};
 pub use domain::Domain;
 pub use draw::Draw;
+pub use map::npy;
 pub use options::Options;
 pub use outputs::Promise;
 pub use process::MOST_SECONDS;

@@ -1,6 +1,6 @@
 //! Measured maps: what a run of `grainsmooth smooth` is given.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 use crate::draw::Draw;
 
@@ -127,15 +127,7 @@ impl LabelledGrid {
         if is_zyx {
             shape.reverse();
         }
-        let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
-        let order = if is_zyx { "False" } else { "True" };
-        let mut header = format!("{{'descr': '|u1', 'fortran_order': {order}, 'shape': ({shape}), }}");
-        header.extend(std::iter::repeat_n(' ', 117 - header.len()));
-        let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-        bytes.extend(header.as_bytes());
-        bytes.push(b'\n');
-        bytes.extend(&self.labels);
-        bytes
+        npy(&shape, &self.labels, !is_zyx)
     }
 
     /// An image for VTK, with spacing and origin.
@@ -148,6 +140,19 @@ impl LabelledGrid {
             labels.join(" ")
         )
     }
+}
+
+/// An array of whole numbers as NumPy writes it, with the first or the last index fastest.
+pub fn npy(shape: &[impl Display], numbers: &[u8], is_first_fastest: bool) -> Vec<u8> {
+    let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
+    let order = if is_first_fastest { "True" } else { "False" };
+    let mut header = format!("{{'descr': '|u1', 'fortran_order': {order}, 'shape': ({shape}), }}");
+    header.extend(std::iter::repeat_n(' ', 117 - header.len()));
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(header.as_bytes());
+    bytes.push(b'\n');
+    bytes.extend(numbers);
+    bytes
 }
 
 /// Orientations of the grains of a map, in degrees, and what of its points is not known.

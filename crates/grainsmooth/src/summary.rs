@@ -153,7 +153,6 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
-/// What became of short edges of the cells.
 /// Most lines that became points which the summary names one by one; all are in the JSON summary.
 const NAMED: usize = 5;
 
@@ -173,6 +172,7 @@ fn write_merged_lines(out: &mut fmt::Formatter<'_>, merged: &[LineMerged]) -> fm
     }
 }
 
+/// What became of short edges of the cells.
 fn write_regularization(out: &mut fmt::Formatter<'_>, synthesis: &Synthesis) -> fmt::Result {
     let Collapsed { edges, faces } = synthesis.collapsed;
     if edges > 0 {
