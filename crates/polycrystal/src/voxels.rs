@@ -73,7 +73,7 @@ impl VoxelOptions {
 /// Lines that go where grains touch along an edge only are parted for the grain with more voxels. Where the box has periods, grains go on through its sides, and are whole.
 ///
 /// Then short edges collapse, if that is asked for. Grains keep their volumes, but the middle of a voxel near a boundary may come to lie in the grain beyond.
-/// Where the certificate finds a fault in what is left, or more folds than before, more points stay.
+/// Where the certificate finds a fault in what is left, more points stay.
 ///
 /// ```
 /// use polycrystal::{GrainId, VoxelLabel, VoxelOptions, Voxels, smooth_voxels};
@@ -119,7 +119,7 @@ pub fn smooth_voxels_tuned(
     let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
     let is_open = kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
     let wanted = Wanted { volumes: &counts, sides: &sides, is_open };
-    let (whole, folds) = smoothed(staircase, &lattice, &wanted, tuning, &progress);
+    let whole = smoothed(staircase, &lattice, &wanted, tuning, &progress);
     let voxel = voxels.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
     let network = |found: &VoxelSurface| -> Result<SmoothedVoxels, (NetworkError, Faulty)> {
@@ -162,44 +162,25 @@ pub fn smooth_voxels_tuned(
             tuning,
         };
         let mut is_held = vec![false; whole.points.len()];
-        let mut stays = is_held.clone();
-        let mut best: Option<SmoothedVoxels> = None;
-        let count = |found: &SmoothedVoxels| found.certificate.faults.0.len();
         for _ in 0..tuning.decimations {
-            let decimated = decimation.decimated(&is_held, &stays);
-            match network(&decimated) {
-                Ok(found) if count(&found) <= folds => return Ok(found),
-                Ok(found) => {
-                    // A second surface has few of these folds left, and each takes as long as all that went before.
-                    if let Some(best) = best {
-                        return Ok(if count(&found) < count(&best) { found } else { best });
-                    }
-                    let sides = found.network.sides();
-                    let surface = Surface::of_level(found.network.finest(), &found.points, &sides);
-                    let faulty = Faulty::new(&found.certificate.faults, &surface, voxels);
-                    decimation.hold(&mut stays, faulty);
-                    is_held.iter_mut().zip(&stays).for_each(|(is_held, stays)| *is_held |= stays);
-                    best = Some(found);
-                }
+            match network(&decimation.decimated(&is_held)) {
+                Ok(found) => return Ok(found),
                 Err((NetworkError::Invalid(_), faulty)) => decimation.hold(&mut is_held, faulty),
                 Err((other, _)) => return Err(other),
             }
-        }
-        if let Some(best) = best {
-            return Ok(best);
         }
     }
     network(&whole).map_err(|(error, _)| error)
 }
 
-/// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings, and how many pairs of elements are folded.
+/// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings.
 fn smoothed(
     staircase: Staircase,
     lattice: &Lattice<'_>,
     wanted: &Wanted<'_>,
     tuning: &VoxelTuning,
     progress: &(impl Fn(usize, usize) + Sync),
-) -> (VoxelSurface, usize) {
+) -> VoxelSurface {
     let boxes = Boxes::new(&staircase.places, lattice, tuning.within);
     let (graph, starts) = {
         let faces = &staircase.faces;
@@ -214,6 +195,6 @@ fn smoothed(
     let search = VolumeSearch::new(points.len(), &cut, wanted, tuning);
     let volume_error = search.restore(&mut points, &boxes, &vec![false; graph.count()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };
-    let (points, folds) = untangling.untangle(points, volume_error);
-    (VoxelSurface { points, places: staircase.places, cut }, folds)
+    let points = untangling.untangle(points, volume_error);
+    VoxelSurface { points, places: staircase.places, cut }
 }

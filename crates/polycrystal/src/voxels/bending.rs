@@ -166,7 +166,10 @@ pub(super) fn least_bending(
             *at = next;
         });
     }
-    let place = |(point, displacement): (usize, &Vec3A)| boxes.middle(point) + displacement.as_dvec3();
+    // Boxes in single precision are larger by 1e-8 of a voxel.
+    let place = |(point, displacement): (usize, &Vec3A)| {
+        boxes.nearest(point, boxes.middle(point) + displacement.as_dvec3())
+    };
     points.par_iter().enumerate().map(place).collect()
 }
 

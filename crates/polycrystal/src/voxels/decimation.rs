@@ -1,10 +1,13 @@
 //! Fewer elements: short edges collapse, and grains get their volumes back.
 
+use std::collections::BTreeSet;
+
 use glam::{DVec3, UVec3};
 use voronoi::{Domain, PeriodicVertex};
 
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::id::id;
 use crate::network::grain_complex::limits;
 use crate::network::line_coarsening::coarsened_segments;
@@ -17,6 +20,7 @@ use crate::voxels::slabs::Slabs;
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tuning::VoxelTuning;
+use crate::voxels::untangling::VOLUME_TOLERANCE;
 use crate::voxels::volumes::{VolumeSearch, Wanted};
 use crate::{BoundaryId, GrainId, Side, Surface};
 
@@ -67,10 +71,10 @@ impl Faulty {
 }
 
 impl Decimation<'_> {
-    /// The surface with a part of its points, which move so that grains have their volumes, but for those that stay; those that are held are all there.
+    /// The surface with a part of its points, which move so that grains have their volumes; those that are held are all there.
     ///
     /// Small grains keep shorter edges.
-    pub(super) fn decimated(&self, is_held: &[bool], stays: &[bool]) -> VoxelSurface {
+    pub(super) fn decimated(&self, is_held: &[bool]) -> VoxelSurface {
         let VoxelSurface { points, places, cut } = self.whole;
         // Elements of copies go with their originals.
         let count = cut.kind_of.iter().take_while(|kind| kind.index() < self.kinds.len()).count();
@@ -111,12 +115,34 @@ impl Decimation<'_> {
             }
         };
         let places: Vec<UVec3> = kept.iter().map(|point| places[*point as usize]).collect();
-        let mut points: Vec<DVec3> = kept.iter().map(|point| points[*point as usize]).collect();
-        let boxes = Boxes::new(&places, self.lattice, self.tuning.within_when_decimated);
-        let search = VolumeSearch::new(points.len(), &cut, self.wanted, self.tuning);
-        let stays: Vec<bool> = kept.iter().map(|point| stays[*point as usize]).collect();
-        search.restore(&mut points, &boxes, &stays);
+        let points = kept.iter().map(|point| points[*point as usize]).collect();
+        let points = self.with_volumes(points, &places, &cut);
         VoxelSurface { points, places, cut }
+    }
+
+    /// The points that are left, moved so that grains have their volumes. Where boundaries would fold by that, points stay if the others can make up for it.
+    fn with_volumes(&self, left: Vec<DVec3>, places: &[UVec3], cut: &CutFaces) -> Vec<DVec3> {
+        let boxes = Boxes::new(places, self.lattice, self.tuning.within_when_decimated);
+        let search = VolumeSearch::new(left.len(), cut, self.wanted, self.tuning);
+        let neighbors = Adjacency::of_elements(cut.elements(), &cut.kind_of).inner.pairs();
+        let folded: BTreeSet<[u32; 2]> = cut.folds(&left, &neighbors).into_iter().collect();
+        let mut stays = vec![false; left.len()];
+        let mut best = None;
+        loop {
+            let mut points = left.clone();
+            let error = search.restore(&mut points, &boxes, &stays);
+            if error > VOLUME_TOLERANCE {
+                return best.unwrap_or(points);
+            }
+            let mut folds = cut.folds(&points, &neighbors);
+            folds.retain(|pair| !folded.contains(pair));
+            if folds.is_empty() {
+                return points;
+            }
+            // In each round some more do: two elements of which all stays are as they were.
+            cut.points_of(&folds).for_each(|point| stays[point as usize] = true);
+            best = Some(points);
+        }
     }
 
     fn unwrapped<const N: usize>(

@@ -4,7 +4,6 @@ use cancellation::check_cancelled;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::check::folds::folded_pairs;
 use crate::check::intersections::{boundary_boxes, crossing_elements};
 use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
@@ -16,7 +15,7 @@ use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volumes::VolumeSearch;
 
 /// Largest error of a volume that mended folds may leave, as a share of it.
-const VOLUME_TOLERANCE: f64 = 1e-12;
+pub(super) const VOLUME_TOLERANCE: f64 = 1e-12;
 
 /// What points are moved by.
 pub(super) struct Untangling<'a> {
@@ -57,8 +56,8 @@ impl Neighbors<'_> {
 impl Untangling<'_> {
     /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
     ///
-    /// Folds stay where grains are one voxel thick: a plate has a rim. Returns also how many do.
-    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> (Vec<DVec3>, usize) {
+    /// Folds stay where grains are one voxel thick: a plate has a rim.
+    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
         let surface = self.search.surface(&[]);
         let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
         let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface) };
@@ -80,7 +79,7 @@ impl Untangling<'_> {
             }
             best = tried;
         }
-        (best.points, best.folds.len())
+        best.points
     }
 
     /// Points of elements that cross go half the way home, and stay there while the others restore the volumes.
@@ -100,7 +99,7 @@ impl Untangling<'_> {
                 crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries))
             };
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = self.folds(&points, neighbors.pairs());
+                let folds = self.search.cut.folds(&points, neighbors.pairs());
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
             let home = home.get_or_insert_with(|| self.home());
@@ -132,7 +131,7 @@ impl Untangling<'_> {
         for ring in 0.. {
             for _ in 0..self.tuning.rounds_of_smoothing {
                 check_cancelled();
-                let folds = self.folds(points, neighbors);
+                let folds = self.search.cut.folds(points, neighbors);
                 if folds.is_empty() {
                     return is_moved;
                 }
@@ -153,7 +152,7 @@ impl Untangling<'_> {
                 );
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
             }
-            let left = self.folds(points, neighbors).len();
+            let left = self.search.cut.folds(points, neighbors).len();
             if ring == self.tuning.rings || 2 * left > before {
                 break;
             }
@@ -162,18 +161,10 @@ impl Untangling<'_> {
         is_moved
     }
 
-    fn folds(&self, points: &[DVec3], neighbors: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        let cut = self.search.cut;
-        folded_pairs(neighbors, &cut.elements().normals(&cut.copies.with_copies(points)), 0.0)
-    }
-
     /// The corners of elements, and all points so many edges around them.
     fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
         let mut marked = vec![false; self.graph.count()];
-        let (elements, copies) = (self.search.cut.elements(), &self.search.cut.copies);
-        let corners = pairs.iter().flatten().map(|element| elements.corners(*element));
-        let mut last: Vec<u32> =
-            corners.flat_map(|corners| corners.to_vec()).map(|corner| copies.original(corner)).collect();
+        let mut last: Vec<u32> = self.search.cut.points_of(pairs).collect();
         for ring in 0..=rings {
             last.retain(|point| !std::mem::replace(&mut marked[*point as usize], true));
             if ring < rings {

@@ -103,6 +103,36 @@ fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
     }
 }
 
+/// Eleven by ten voxels in each layer, each in the grain of the seed nearest to it; one grain for each seed that is nearest to any.
+fn nearest_seeds(seeds: &[[f64; 3]], depth: usize) -> Voxels {
+    let shape = [11, 10, depth];
+    let nearest = |voxel: [usize; 3]| {
+        let place = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5;
+        let distance = |seed: &[f64; 3]| place.distance(DVec3::from_array(*seed) * 10.0);
+        (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).unwrap()
+    };
+    let mut known = std::collections::BTreeMap::new();
+    let [width, height, _] = shape;
+    let mut labels = Vec::new();
+    for index in 0..width * height * depth {
+        let count = u32::try_from(known.len()).unwrap();
+        let voxel = [index % width, index / width % height, index / width / height];
+        labels.push(*known.entry(nearest(voxel)).or_insert(count));
+    }
+    voxels(DVec3::ONE, shape, |[x, y, z]| Some(labels[(z * height + y) * width + x]))
+}
+
+/// In single precision 0.49 is larger by 1e-8: a point at the side of its box was outside by that.
+#[test]
+fn points_at_the_sides_of_their_boxes_are_inside() {
+    let seeds = [
+        [0.7313824856514416, 0.9486347145654053, 0.0],
+        [0.4804714802960406, 0.31733269000241127, 0.48480160982365456],
+    ];
+    let map = nearest_seeds(&seeds, 1);
+    check(&map, &smoothed(&map));
+}
+
 /// Flat boundaries across an axis stay where they are, to the last place.
 #[test]
 fn layers_stay_flat() {
@@ -320,21 +350,7 @@ proptest! {
         seeds in prop::collection::vec([0.0..1.0f64, 0.0..1.0, 0.0..1.0], 2..12),
         depth in prop::sample::select(vec![1usize, 9]),
     ) {
-        let shape = [11, 10, depth];
-        let nearest = |voxel: [usize; 3]| {
-            let place = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5;
-            let distance = |seed: &[f64; 3]| place.distance(DVec3::from_array(*seed) * 10.0);
-            (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).unwrap()
-        };
-        let mut known = std::collections::BTreeMap::new();
-        let [width, height, _] = shape;
-        let mut labels = Vec::new();
-        for index in 0..width * height * depth {
-            let count = u32::try_from(known.len()).unwrap();
-            let voxel = [index % width, index / width % height, index / width / height];
-            labels.push(*known.entry(nearest(voxel)).or_insert(count));
-        }
-        let map = voxels(DVec3::ONE, shape, |[x, y, z]| Some(labels[(z * height + y) * width + x]));
+        let map = nearest_seeds(&seeds, depth);
         let smoothed = smoothed(&map);
         prop_assert!(smoothed.relabelled < 10);
         check(&map, &smoothed);
