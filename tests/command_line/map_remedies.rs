@@ -5,25 +5,33 @@ use campaign::refusal;
 use crate::maps::npy;
 use crate::workplace::Workplace;
 
-/// A map in the plane.
+/// A map as NumPy has it, the last index fastest.
 struct Map {
-    shape: [usize; 2],
+    shape: &'static [usize],
     labels: &'static [u8],
 }
 
-const TWO: Map = Map { shape: [2, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2] };
-const WITH_PORE: Map = Map { shape: [4, 3], labels: &[0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 2] };
-const RING: Map = Map { shape: [3, 3], labels: &[2, 2, 2, 2, 1, 2, 2, 2, 2] };
-const BANDS: Map = Map { shape: [4, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2] };
-const ISLAND: Map = Map { shape: [4, 4], labels: &[1, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1] };
+const TWO: Map = Map { shape: &[2, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2] };
+const WITH_PORE: Map = Map { shape: &[4, 3], labels: &[0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 2] };
+const RING: Map = Map { shape: &[3, 3], labels: &[2, 2, 2, 2, 1, 2, 2, 2, 2] };
+const BANDS: Map = Map { shape: &[4, 4], labels: &[1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2, 1, 1, 2, 2] };
+const ISLAND: Map = Map { shape: &[4, 4], labels: &[1, 1, 1, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 1, 1, 1] };
+/// Found at random.
+const MIXED: Map = Map {
+    shape: &[5, 4, 4],
+    labels: b"11212122112112222211111222111111212111212221221211211211111111121121212121212212",
+};
+const THIN: Map = Map { shape: &[5, 3, 3], labels: b"313111113131311112123333331312223222223123333" };
 
 /// A kind of refusal, a map, the options that are refused, and those after the remedy.
-const REMEDIES: [(&str, Map, &str, &str); 6] = [
+const REMEDIES: [(&str, Map, &str, &str); 8] = [
     ("MapProblem::Unfit", WITH_PORE, "--exterior-label 0 --fit-cells", "--exterior-label 0"),
     ("MapProblem::NoCells", RING, "--fit-cells", ""),
     ("MapProblem::Unfit, small grains", TWO, "--min-voxels 5", "--min-voxels 4"),
     ("ShortPeriod", TWO, "--periodic x", ""),
     ("EndlessGrain", BANDS, "--periodic x,y", "--periodic y"),
+    ("MixedVoxels", MIXED, "--parts split", "--parts split --min-voxels 4"),
+    ("RelaxesFolded", THIN, "--relax 0.05", ""),
     ("PeriodicPores", ISLAND, "--exterior-label 0 --periodic x,y", "--exterior-label 0"),
 ];
 

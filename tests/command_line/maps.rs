@@ -102,6 +102,17 @@ fn the_surface_of_a_pore_is_named_as_the_outer_one() {
     assert!(file.face_labels.iter().all(|[_, second]| *second > 0));
 }
 
+/// The surface of a pore and the side of the box that it reaches lie between the same grain and nothing.
+#[test]
+fn surfaces_of_pores_and_sides_of_the_box_are_no_folds() {
+    let workplace = Workplace::new();
+    let label = |[x, y, z]: [u32; 3]| if (3..8).contains(&x) && (3..8).contains(&y) && z < 4 { 0 } else { 1 };
+    let voxels = (0..12 * 12 * 12).map(|at| label([at / 144, at / 12 % 12, at % 12]));
+    workplace.put("pore.npy", npy(&[12, 12, 12], &voxels.collect::<Vec<_>>()));
+    workplace.run("smooth pore.npy --exterior-label 0 -o a.vtp");
+    workplace.command("check a.vtp").assert().success();
+}
+
 #[test]
 fn short_edges_collapse_unless_told_otherwise() {
     let workplace = workplace();
@@ -171,48 +182,6 @@ for name, compression in [("a.mha", 0), ("b.mha", 1), ("c.mhd", 0), ("d.mhd", 1)
         assert_eq!(found.map.shape, expected.map.shape, "{name}");
         assert!((found.map.origin - expected.map.origin).length() < 1e-12, "{name}: {}", found.map.origin);
         assert!((found.map.spacing - expected.map.spacing).length() < 1e-12, "{name}");
-    }
-}
-
-#[test]
-fn damaged_maps_are_refused_or_read() {
-    let workplace = workplace();
-    let options = MapOptions::default();
-    for name in ["volume.npy", "volume.nrrd", "volume.nhdr", "volume.mhd", "volume.tesr", "volume_raw.tesr"] {
-        let good = workplace.bytes(name);
-        let damaged = format!("damaged_{name}");
-        // Knuth's generator: the same damage on each machine.
-        let mut state = 1_u64;
-        let mut below = |count: usize| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            usize::try_from(state >> 33).unwrap() % count
-        };
-        let mut refused = 0;
-        for variant in 0..200 {
-            let mut bytes = good.clone();
-            if variant % 4 == 3 {
-                bytes.truncate(below(good.len()));
-            } else {
-                // Half of them in the header.
-                let end = if variant % 2 == 0 { good.len() } else { good.len().min(400) };
-                for _ in 0..=variant % 3 {
-                    bytes[below(end)] ^= 1 << below(8);
-                }
-            }
-            workplace.put(&damaged, &bytes);
-            match read_map(&workplace.path(&damaged), &options) {
-                Ok(read) => {
-                    let [nx, ny, nz] = read.map.shape;
-                    assert_eq!(read.map.labels.len(), nx * ny * nz, "{name}, variant {variant}");
-                }
-                Err(error) => {
-                    assert!(error.to_string().contains(&damaged), "{name}, variant {variant}: {error}");
-                    refused += 1;
-                }
-            }
-        }
-        // At least those that are cut off.
-        assert!(refused >= 50, "{name}: {refused}");
     }
 }
 

@@ -32,7 +32,8 @@ fn damaged_networks_of_others_are_read_or_refused() {
         let refused = refused_in_200_ways(&path, read);
         assert!(refused > 20, "{name}: {refused}");
     }
-    for (name, text) in [("grains.csv", TABLE), ("grains.json", POLYGONS)] {
+    let dump = include_str!("../data/strings.dmp");
+    for (name, text) in [("grains.csv", TABLE), ("grains.json", POLYGONS), ("strings.dmp", dump)] {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
         assert!(read(&path).is_ok());

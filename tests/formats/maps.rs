@@ -10,8 +10,13 @@ use crate::programs::run;
 
 /// Flips, changes and cuts off bytes of a map in 200 ways: each gives a map, or an error in one line. Returns how many are refused.
 pub fn refused_when_damaged(path: &Path) -> usize {
+    refused_with(path, &MapOptions::default())
+}
+
+/// As [`refused_when_damaged`], where options tell what a file does not.
+fn refused_with(path: &Path, options: &MapOptions) -> usize {
     refused_in_200_ways(path, |path| {
-        let map = read_map(path, &MapOptions::default())?;
+        let map = read_map(path, options)?;
         assert_eq!(map.map.labels.len(), map.map.shape.iter().product::<usize>());
         Ok(())
     })
@@ -47,12 +52,38 @@ pub fn refused_in_200_ways(path: &Path, read: impl Fn(&Path) -> Result<(), Error
 fn damaged_maps_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/maps");
-    for name in ["volume_damask.vti", "volume_points.vti", "volume.npy", "volume_zyx_c.npy"] {
+    let numbers = std::fs::read(data.join("volume.raw")).unwrap();
+    // Some take their numbers from there.
+    std::fs::write(folder.path().join("volume.raw"), &numbers).unwrap();
+    for name in [
+        "volume_damask.vti",
+        "volume_points.vti",
+        "volume.npy",
+        "volume_zyx_c.npy",
+        "volume.nrrd",
+        "volume.nhdr",
+        "volume.mhd",
+        "volume.tesr",
+        "volume_raw.tesr",
+    ] {
         let path = folder.path().join(name);
         std::fs::copy(data.join(name), &path).unwrap();
         let refused = refused_when_damaged(&path);
         assert!(refused > 20, "{name}: {refused}");
     }
+    let head = std::fs::read_to_string(data.join("volume.mhd")).unwrap();
+    let path = folder.path().join("volume.mha");
+    std::fs::write(&path, [head.replace("volume.raw", "LOCAL").as_bytes(), &numbers].concat()).unwrap();
+    let refused = refused_when_damaged(&path);
+    assert!(refused > 20, "volume.mha: {refused}");
+    let options = MapOptions {
+        shape: Some(vec![24, 20, 16]),
+        number_type: Some("u16".parse().unwrap()),
+        ..MapOptions::default()
+    };
+    // Nothing is wrong with any numbers but how many they are: those that are cut off are refused.
+    let refused = refused_with(&folder.path().join("volume.raw"), &options);
+    assert!(refused > 20, "volume.raw: {refused}");
 }
 
 #[test]

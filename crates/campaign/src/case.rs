@@ -63,8 +63,6 @@ pub struct MapPromise {
     pub name: String,
     /// The words that tell how it is read.
     pub options: Vec<String>,
-    /// Whether thin grains may be folded.
-    pub may_fold: bool,
     /// Whether the middle of every voxel lies in the grain of its label.
     pub is_exact: bool,
 }

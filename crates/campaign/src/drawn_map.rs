@@ -28,8 +28,6 @@ impl Case {
             && !options.has("levels")
             && !options.has("fit-cells")
             && all_points_stay(dimension, &options);
-        // Where the surface of a pore meets a side of the box, a file does not tell the two apart.
-        let may_fold = is_still || grid.kind == "cells with pores" || options.has("min-pore");
         let kind = format!("{}{}", if is_of_orientations { "orientations of " } else { "" }, grid.kind);
         Self {
             kind,
@@ -39,7 +37,7 @@ impl Case {
             mistake: None,
             promise,
             keeps_volumes: true,
-            map: Some(MapPromise { name, options: of_map, may_fold, is_exact }),
+            map: Some(MapPromise { name, options: of_map, is_exact }),
             dimension,
             angles: AngleClass::Measured,
         }

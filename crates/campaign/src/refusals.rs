@@ -93,6 +93,8 @@ pub const REFUSALS: &[Kind] = &[
     ("MapProblem::Unfit, no confidence", &["its points have no confidence index; leave --min-ci out"]),
     ("MapProblem::Unfit, sections", &["has sections that share no place after they are aligned"]),
     ("ShortPeriod", &["where it repeats; at least", "are needed there"]),
+    ("MixedVoxels", &["single voxels of different grains are too mixed", "--min-voxels"]),
+    ("RelaxesFolded", &["and cannot relax from there", "leave out --relax"]),
     ("EndlessGrain", &["meets its own image through the sides", "or take a larger map"]),
     ("PeriodicPores", &["a map that repeats has no exterior", "or leave the periods out"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.

@@ -2,7 +2,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::NetworkError;
+use polycrystal::{Faults, NetworkError};
 use voronoi::volumes::{PlaceError, VolumesError};
 use voronoi::{Dimension, VoronoiError};
 
@@ -380,6 +380,31 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
         /// Why.
+        cause: Box<NetworkError>,
+    },
+    /// Grains of a map are so small and mixed that boundaries between them cross, or cannot keep the volumes.
+    #[error(
+        "{}: single voxels of different grains are too mixed for boundaries that keep apart and keep all volumes: {faults}; drop small grains with --min-voxels 4, or more",
+        path.display()
+    )]
+    MixedVoxels {
+        /// The path as given.
+        path: PathBuf,
+        /// What is wrong with the boundaries.
+        faults: Faults,
+    },
+    /// Boundaries are folded before they relax, and do not get out of that.
+    #[error(
+        "{}: boundaries are folded in {folds} places, as where grains are thinner than three voxels, and cannot relax from there; leave out --relax, or give a finer map",
+        path.display()
+    )]
+    RelaxesFolded {
+        /// The path as given.
+        path: PathBuf,
+        /// Number of pairs of elements that are folded.
+        folds: usize,
+        /// What relaxation said.
+        #[source]
         cause: Box<NetworkError>,
     },
     /// A collection of files (.pvd, .vtm) names none.

@@ -133,7 +133,8 @@ impl fmt::Display for Summary<'_> {
         let validation = &polycrystal.validation;
         let error = validation.largest_volume_error;
         writeln!(out, "{measure:12}largest relative error of a grain {error:.1e}")?;
-        let folds = polycrystal.measurement().map_or(0, |measurement| measurement.folds);
+        // A good network has no other faults.
+        let folds = validation.faults.0.len();
         let turned = if folds == 0 { "crossed or folded" } else { "crossed" };
         write!(
             out,

@@ -151,8 +151,8 @@ impl LabelledFile {
             }
             None => None,
         };
-        // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
-        let boundary_ids = boundary_ids.filter(|_| settings.is_some());
+        // With the names of other tools, all that a periodic grain has beyond the box has the same labels; so have a pore's surface and the sides of the box.
+        let boundary_ids = boundary_ids.filter(|_| first.is_some());
         let mut boundaries: BTreeMap<([i64; 2], Option<i64>), BoundaryId> = BTreeMap::new();
         let (mut sides, mut comes_again) = (Vec::new(), Vec::new());
         let mut of_cell = Vec::with_capacity(labels.len());

@@ -54,7 +54,7 @@ impl Polycrystal {
         })?;
         let measurement = Measurement {
             cut: if network.domain().is_periodic() { BVec3::FALSE } else { repeats },
-            ..Measurement::given(command_line, attributes_of_file(file, &labels), &certificate)
+            ..Measurement::given(command_line, attributes_of_file(file, &labels))
         };
         let times = vec![(Stage::Validation, start.elapsed())];
         Ok(Self::measured(measurement, network, points, certificate, times))
@@ -71,7 +71,7 @@ impl Polycrystal {
     pub fn of_surface(surface: &Surface<'_>, ids: Vec<u32>, command_line: String) -> Result<Self, Error> {
         let start = Instant::now();
         let (network, points, certificate) = closed_grains(surface, None)?;
-        let measurement = Measurement::given(command_line, grains_called(ids), &certificate);
+        let measurement = Measurement::given(command_line, grains_called(ids));
         let times = vec![(Stage::Validation, start.elapsed())];
         Ok(Self::measured(measurement, network, points, certificate, times))
     }
@@ -90,16 +90,9 @@ impl Polycrystal {
 }
 
 impl Measurement {
-    /// Of a network that is there, found to be as its certificate says.
-    fn given(command_line: String, grains: GrainAttributes, certificate: &Certificate) -> Self {
-        Self {
-            command_line,
-            file: FileOptions::default(),
-            grains,
-            map: None,
-            cut: BVec3::FALSE,
-            folds: certificate.faults.0.len(),
-        }
+    /// Of a network that is there.
+    fn given(command_line: String, grains: GrainAttributes) -> Self {
+        Self { command_line, file: FileOptions::default(), grains, map: None, cut: BVec3::FALSE }
     }
 }
 

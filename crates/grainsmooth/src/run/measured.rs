@@ -12,7 +12,7 @@ use polycrystal::{
 
 use super::fitted_cells::{FittedCells, fitted_cells};
 use super::given::grains_called;
-use super::origin::{Measurement, Origin, SmoothedMap};
+use super::origin::{Measurement, SmoothedMap};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use crate::maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap};
@@ -55,7 +55,7 @@ pub struct MapRun {
 /// ```
 ///
 /// # Errors
-/// [`Error::NetworkOfMap`] where the map leads to none.
+/// [`Error::NetworkOfMap`], [`Error::MixedVoxels`] and [`Error::RelaxesFolded`] where the map leads to none.
 pub fn smooth_map(
     path: &Path,
     measured: MeasuredMap,
@@ -87,7 +87,11 @@ pub fn smooth_map(
         };
         let voxels = voxels(measured.map)?;
         let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
-        let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
+        let SmoothedVoxels { network, points, certificate, relabelled } =
+            smoothed.map_err(|error| match error {
+                NetworkError::Invalid(faults) => Error::MixedVoxels { path: path.to_owned(), faults },
+                other => failed(other),
+            })?;
         map.relabelled = relabelled;
         (network, points, certificate)
     };
@@ -98,7 +102,6 @@ pub fn smooth_map(
         grains,
         map: Some(map),
         cut: BVec3::FALSE,
-        folds: certificate.faults.0.len(),
     };
     let smooth = Polycrystal::measured(measurement, network, points, certificate, times);
     smooth.refined(path, &run.network, progress)
@@ -109,7 +112,7 @@ impl Polycrystal {
     /// from. Volumes and neighbours stay.
     ///
     /// # Errors
-    /// [`Error::NetworkOfMap`] where boundaries cannot move so far without folds or crossings, and [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) or
+    /// [`Error::NetworkOfMap`] or [`Error::RelaxesFolded`] where boundaries cannot move so far without folds or crossings, and [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) or
     /// [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
     pub fn refined(
         mut self,
@@ -119,7 +122,11 @@ impl Polycrystal {
     ) -> Result<Self, Error> {
         let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
         if let Some(relaxation) = options.relaxation() {
-            self.relax(relaxation, progress).map_err(failed)?;
+            let folds = self.validation.faults.0.len();
+            self.relax(relaxation, progress).map_err(|cause| match folds {
+                0 => failed(cause),
+                _ => Error::RelaxesFolded { path: path.to_owned(), folds, cause: Box::new(cause) },
+            })?;
         }
         if options.levels > 0 {
             let control_mesh = ControlMesh { is_still: true, ..size(self.network.control_mesh()).into() };
@@ -151,9 +158,6 @@ impl Polycrystal {
     }
 
     fn set_points(&mut self, points: Vec<DVec3>, validation: Certificate) {
-        if let Origin::Measured(measurement) = &mut self.origin {
-            measurement.folds = validation.faults.0.len();
-        }
         (self.points, self.validation) = (points, validation);
         self.residual = herring_residual(&self.network, &self.points);
     }

@@ -53,8 +53,6 @@ pub struct Measurement {
     pub map: Option<SmoothedMap>,
     /// The axes along which the network repeats, and is cut at its box.
     pub cut: BVec3,
-    /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.
-    pub folds: usize,
 }
 
 /// A map, and what was changed of it.

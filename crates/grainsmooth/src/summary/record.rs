@@ -261,7 +261,7 @@ impl SummaryRecord {
             angles_after: polycrystal.validation.angles.map(Spread::from),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
             largest_relative_volume_error: polycrystal.validation.largest_volume_error,
-            folds: measurement.map_or(0, |measurement| measurement.folds),
+            folds: polycrystal.validation.faults.0.len(),
             relabelled_voxels: map.map_or(0, |map| map.relabelled),
             seconds: seconds.collect(),
             written,
