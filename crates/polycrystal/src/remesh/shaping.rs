@@ -136,10 +136,27 @@ impl<'a> Shaping<'a> {
         };
         let mut short: Vec<u32> = self.patch.neighbours(point).into_iter().filter(is_short).collect();
         short.sort_by(|a, b| self.patch.length([point, *a]).total_cmp(&self.patch.length([point, *b])));
-        short.into_iter().any(|other| self.collapse([point, other]))
+        short.into_iter().any(|other| {
+            self.collapse([point, other], |shaping, _, after| {
+                let is_long =
+                    |edge: [u32; 2]| shaping.patch.length(edge) > shaping.tuning.longest * shaping.size(edge);
+                let mut edges = after.iter().flat_map(|corners| edges(*corners));
+                !edges.any(|edge| edge.contains(&other) && is_long(edge))
+            })
+        })
     }
 
-    fn collapse(&mut self, ends: [u32; 2]) -> bool {
+    /// Moves a point into one of its neighbours, if that makes the least angle around larger. So do those between two lines that are an element and a half apart.
+    fn collapse_to_widen(&mut self, point: u32) -> bool {
+        self.patch.neighbours(point).into_iter().any(|other| {
+            self.collapse([point, other], |shaping, before, after| {
+                shaping.worst_angle(after) > before + BETTER
+            })
+        })
+    }
+
+    /// Moves the first end of an edge into the other, or both inside into the middle, if `is_right` says so of the worst angle before and the triangles after.
+    fn collapse(&mut self, ends: [u32; 2], is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool) -> bool {
         let [from, to] = ends;
         if !self.patch.pinched(ends).is_empty() {
             return false;
@@ -166,15 +183,12 @@ impl<'a> Shaping<'a> {
         let stay = self.patch.star(to).iter().map(|triangle| self.patch.corners(*triangle));
         after.extend(stay.filter(|corners| !corners.contains(&from)));
         let allowed = self.agreement(&before).min(self.tuning.least_cosine);
+        let worst = self.worst_angle(&before);
         let old = (self.patch.place(to), self.feet[to as usize]);
         if let Some(foot) = moved {
             self.put(to, foot);
         }
-        let is_long = |edge: [u32; 2]| self.patch.length(edge) > self.tuning.longest * self.size(edge);
-        let is_good = after
-            .iter()
-            .all(|corners| edges(*corners).into_iter().all(|edge| !is_long(edge) || !edge.contains(&to)))
-            && self.agreement(&after) >= allowed;
+        let is_good = is_right(self, worst, &after) && self.agreement(&after) >= allowed;
         if is_good {
             self.patch.collapse(ends);
         } else {
@@ -280,7 +294,7 @@ impl<'a> Shaping<'a> {
         is_good
     }
 
-    /// Looks for places around points with narrow triangles where the least angle is larger.
+    /// Looks for places around points with narrow triangles where the least angle is larger; where there is none, such points may go.
     fn widen(&mut self) {
         let good = -self.tuning.wide;
         for _ in 0..self.tuning.searches {
@@ -291,7 +305,7 @@ impl<'a> Shaping<'a> {
                 }
                 let star = self.star(point);
                 if self.worst_angle(&star) < good {
-                    has_moved |= self.search(point, &star);
+                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point);
                 }
             }
             self.flip();
@@ -338,5 +352,29 @@ impl Outlined {
         let mut shaping = Shaping::new(self.patch, self.reference, &self.near, tuning);
         shaping.shape();
         (shaping, self.keys)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::remesh::gradation::Gradation;
+
+    /// Six triangles around a point between two lines have angles of 27 degrees; four without it have 45.
+    #[test]
+    fn a_point_between_two_lines_goes_where_angles_are_wider_without_it() {
+        let places = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.5]];
+        let points = places.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
+        let triangles = [[0, 1, 6], [1, 2, 6], [2, 3, 6], [3, 4, 6], [4, 5, 6], [5, 0, 6]];
+        let lines = vec![vec![0, 3], vec![0], vec![0, 1], vec![1, 2], vec![2], vec![2, 3], vec![]];
+        let patch = Patch::new(points.clone(), lines, &triangles);
+        let gradation = Gradation { growth: 0.4, most: 1.0 };
+        let reference = Reference::new(points, vec![1.0; 7], triangles.to_vec(), gradation);
+        let tuning = RemeshTuning::default();
+        let mut shaping = Shaping::new(patch, reference, &[0; 7], &tuning);
+        shaping.shape();
+        let all: Vec<[u32; 3]> = shaping.patch.all().collect();
+        assert_eq!(all.len(), 4);
+        assert!((shaping.worst_angle(&all) + FRAC_1_SQRT_2).abs() < 1e-12);
     }
 }
