@@ -101,6 +101,13 @@ impl fmt::Display for Summary<'_> {
         if let Some(curved) = polycrystal.curved_edges() {
             writeln!(out, "curved      {curved}")?;
         }
+        if polycrystal.moved_for_cut != DVec3::ZERO {
+            let DVec3 { x, y, z } = polycrystal.moved_for_cut;
+            writeln!(
+                out,
+                "cut         all grains moved by ({x:.4}, {y:.4}, {z:.4}) before, so that walls meet boundaries steeply"
+            )?;
+        }
         if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {
             writeln!(out, "{stretched}; angles, residual and triangles are from before")?;
         }

@@ -12,6 +12,7 @@ mod caps;
 mod pieces;
 mod shape;
 mod snap;
+mod steep;
 mod volumes;
 
 use std::collections::BTreeMap;

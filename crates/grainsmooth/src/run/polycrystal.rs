@@ -41,6 +41,8 @@ pub struct Polycrystal {
     pub mobilities: Option<LawReached>,
     /// What validation found: the angles of the finished network, volumes and how true they are.
     pub validation: Certificate,
+    /// How far all grains were moved before a periodic box was cut, for its planes to meet boundaries steeply; 0 where no elements of a size are asked for.
+    pub moved_for_cut: DVec3,
     /// What became of a wish for elements of a size.
     pub elements: Option<ElementsReached>,
     /// The middles of the triangles' edges, where elements of second order are asked for.
@@ -72,6 +74,7 @@ impl Polycrystal {
             tensions: None,
             mobilities: None,
             validation,
+            moved_for_cut: DVec3::ZERO,
             elements: None,
             middles: None,
             volume_mesh: None,
@@ -210,7 +213,8 @@ impl Polycrystal {
     /// Centroids of the grains in the flat cells, where they come from such; else their own.
     pub(crate) fn centroids(&self) -> Vec<DVec3> {
         if let Some(synthesis) = self.synthesis() {
-            return synthesis.cells.centroids();
+            let centroids = synthesis.cells.centroids();
+            return centroids.into_iter().map(|centroid| centroid + self.moved_for_cut).collect();
         }
         match self.measures() {
             Measures::Space(space) => space.grains.iter().map(|grain| grain.centroid).collect(),
@@ -242,11 +246,13 @@ impl Polycrystal {
             points.iter_mut().for_each(|point| *point *= stretch);
         }
         synthesis.cells.stretch(stretch);
+        self.moved_for_cut *= stretch;
         self.network = self.network.stretched(stretch);
         self
     }
 
-    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
+    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are. Where elements of a size are asked
+    /// for, all grains move first, so that the walls leave room for good ones.
     ///
     /// # Errors
     /// As of [`Network::cut_at_box`].
@@ -258,6 +264,10 @@ impl Polycrystal {
         let cells = &synthesis.cells;
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
+        if synthesis.config.elements.are_asked() {
+            self.moved_for_cut = self.network.motion_for_steep_cut(&self.points);
+            self.points.iter_mut().for_each(|point| *point += self.moved_for_cut);
+        }
         let (network, points) = match self.network.cut_at_box(&self.points, synthesis.relaxed.is_flat) {
             Ok(BoxCut { network, points, attempts }) => {
                 self.attempts.extend(attempts);

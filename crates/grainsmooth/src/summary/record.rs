@@ -61,6 +61,8 @@ pub struct SummaryRecord {
     mobilities: Option<LawReached>,
     /// By what coordinates were multiplied in the end; angles and residual are those before.
     stretch: Option<[f64; 3]>,
+    /// How far all grains were moved before a periodic box was cut; 0 where no elements of a size are asked for.
+    moved_for_cut: [f64; 3],
     points: usize,
     /// Triangles, in the plane segments.
     elements: usize,
@@ -250,6 +252,7 @@ impl SummaryRecord {
             tensions: polycrystal.tensions.clone(),
             mobilities: polycrystal.mobilities.clone(),
             stretch: polycrystal.is_stretched().then(|| polycrystal.stretch().to_array()),
+            moved_for_cut: polycrystal.moved_for_cut.to_array(),
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: polycrystal.level(),

@@ -21,7 +21,7 @@ pub(crate) struct Pieces {
 }
 
 /// What is nearer to a plane than this share of the box's side lies in it: relaxation leaves lattices so far off by rounding.
-const ROUNDING: f64 = 1e-13;
+pub(crate) const ROUNDING: f64 = 1e-13;
 
 /// Which of two opposite walls: by how many periods it is moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

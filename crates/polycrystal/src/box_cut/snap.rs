@@ -14,7 +14,7 @@ use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, GrainId, Mesh, Network};
 
 /// Distance from a plane, in mean lengths of the edges at a point, within which the point moves into it.
-const NEAR: f64 = 0.35;
+pub(crate) const NEAR: f64 = 0.35;
 
 /// How far beyond the plane, in the same unit, a point goes that cannot lie in it: far enough to be told from it.
 const BEYOND: f64 = 0.02;

@@ -207,3 +207,46 @@ fn a_cut_whose_volumes_cannot_be_restored_moves_no_points() {
     let cut = network.with_cell_volumes(doubled).cut_at_box(&points, false).expect("is cut");
     assert!(cut.attempts.len() == 3 && cut.attempts[1].said.contains("wrong volume"), "{:?}", cut.attempts);
 }
+
+/// The least angle between the triangles of a network and the planes of its box across an axis that cut them, as a sine.
+fn least_sine(network: &Network, points: &[DVec3], axis: usize) -> f64 {
+    let Mesh::Triangles(mesh) = &network.finest_level().mesh else { panic!("a network in space") };
+    let [lower, size] = [network.domain().lower(), network.domain().size()].map(|corner| corner[axis]);
+    let sines = mesh.triangles().iter().filter_map(|corners| {
+        let [a, b, c] = corners.map(|corner| points[corner as usize]);
+        let cell = |point: DVec3| ((point[axis] - lower) / size).floor();
+        let is_cut = cell(a) != cell(b) || cell(a) != cell(c);
+        is_cut.then(|| (1.0 - (b - a).cross(c - a).normalize()[axis].powi(2)).sqrt())
+    });
+    sines.fold(1.0, f64::min)
+}
+
+#[test]
+fn planes_meet_moved_networks_steeply() {
+    let domain = cuboid().with_periods(BVec3::new(true, false, true));
+    let seeds = random_seeds(&domain, 30, 5);
+    let (network, mut points) = relaxed(&domain, &seeds);
+    let before = [0, 2].map(|axis| least_sine(&network, &points, axis));
+    let motion = network.motion_for_steep_cut(&points);
+    assert!(motion.y == 0.0 && motion.abs().cmple(0.5 * domain.size()).all(), "{motion}");
+    points.iter_mut().for_each(|point| *point += motion);
+    for (axis, before) in [0, 2].into_iter().zip(before) {
+        let after = least_sine(&network, &points, axis);
+        assert!(after > before && after > 0.25, "{before} {after}");
+    }
+    assert!(network.motion_for_steep_cut(&points).length() < 1e-12, "there is no better plane");
+    let BoxCut { network: cut, points: cut_points, .. } = network.cut_at_box(&points, false).expect("is cut");
+    assert!(validate(&cut, &cut_points).is_ok());
+}
+
+#[test]
+fn planes_stay_where_boundaries_lie_in_them() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let halves = [0.25, 0.75];
+    let places =
+        halves.into_iter().flat_map(|x| halves.into_iter().flat_map(move |y| halves.map(|z| [x, y, z])));
+    let seeds: Vec<DVec3> = places.map(DVec3::from_array).collect();
+    let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("cubes");
+    assert_eq!(network.motion_for_steep_cut(&network.subdivide(&flat)), DVec3::ZERO);
+}
