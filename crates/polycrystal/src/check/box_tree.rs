@@ -45,6 +45,11 @@ impl Bounds {
     }
 
     #[inline]
+    pub(crate) fn lower(&self) -> DVec3 {
+        self.lower
+    }
+
+    #[inline]
     pub(crate) fn size(&self) -> DVec3 {
         self.upper - self.lower
     }

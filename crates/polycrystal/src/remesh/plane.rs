@@ -56,8 +56,9 @@ pub(super) fn remeshed(
 ) -> Result<Remeshed, NetworkError> {
     // A finer level has the vertices of a coarser one first.
     let points = &points[..lines.vertex_count()];
-    let torus = Torus::new(network, lines, points, cut)?;
-    let level = &background::filled(network, lines, points)?;
+    let lengths = [size.length, tuning.shortest * size.length];
+    let (level, points) = &background::filled(network, lines, points, lengths)?;
+    let torus = Torus::new(network, level, points, cut)?;
     let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("it was filled with triangles") };
     let sets = network.wall_sets();
     // Between two lines of one boundary that go on around a corner.

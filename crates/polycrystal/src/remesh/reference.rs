@@ -7,6 +7,9 @@ use crate::mesh::id::id;
 use crate::mesh::nearest_point::nearest_in_triangle;
 use crate::remesh::gradation::Gradation;
 
+/// Distance from a triangle, in units of the size of elements, of what lies in it: no other is nearer by more.
+const ROUNDING: f64 = 1e-9;
+
 /// The triangles of a boundary on the finest level, by numbers of their own.
 pub(crate) struct Reference {
     pub(crate) points: Vec<DVec3>,
@@ -56,7 +59,9 @@ impl Reference {
             let (place, _) = self.nearest_in(triangle, point);
             place.distance_squared(point)
         };
-        let triangle = self.tree.nearest(point, (near, squared(near)), squared);
+        let to_near = squared(near);
+        let is_there = to_near <= (ROUNDING * self.gradation.most).powi(2);
+        let triangle = if is_there { near } else { self.tree.nearest(point, (near, to_near), squared) };
         let (place, weights) = self.nearest_in(triangle, point);
         let corners = self.triangles[triangle as usize];
         let normals = corners.map(|corner| self.normals[corner as usize]);

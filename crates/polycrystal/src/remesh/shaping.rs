@@ -52,10 +52,11 @@ impl<'a> Shaping<'a> {
         self.split_joints();
         for _ in 0..self.tuning.rounds {
             check_cancelled();
-            self.split_long();
-            self.close_short();
-            self.flip();
+            let has_changed = [self.split_long(), self.close_short(), self.flip()];
             self.relax();
+            if has_changed == [false; 3] {
+                break;
+            }
         }
         self.widen();
     }
@@ -106,26 +107,34 @@ impl<'a> Shaping<'a> {
         self.feet.push(foot);
     }
 
-    fn split_long(&mut self) {
+    /// Halves long edges; whether there were any.
+    fn split_long(&mut self) -> bool {
+        let mut has_split = false;
         for edge in self.patch.inner_edges() {
             if self.patch.length(edge) > self.tuning.longest * self.size(edge) {
                 self.halve(edge);
+                has_split = true;
             }
         }
+        has_split
     }
 
-    fn close_short(&mut self) {
-        for _ in 0..SWEEPS {
+    /// Collapses short edges; whether one did.
+    fn close_short(&mut self) -> bool {
+        self.sweep(|shaping| {
             let mut has_collapsed = false;
-            for point in (0u32..).take(self.patch.points.len()) {
-                if self.patch.is_inside(point) {
-                    has_collapsed |= self.collapse_at(point);
+            for point in (0u32..).take(shaping.patch.points.len()) {
+                if shaping.patch.is_inside(point) {
+                    has_collapsed |= shaping.collapse_at(point);
                 }
             }
-            if !has_collapsed {
-                break;
-            }
-        }
+            has_collapsed
+        })
+    }
+
+    /// Does something until nothing happens any more, or often enough; whether anything happened.
+    fn sweep(&mut self, mut once: impl FnMut(&mut Self) -> bool) -> bool {
+        (0..SWEEPS).take_while(|_| once(self)).count() > 0
     }
 
     /// Collapses the shortest edge of a point that may collapse, if it is short.
@@ -218,17 +227,15 @@ impl<'a> Shaping<'a> {
         self.feet[point as usize] = foot;
     }
 
-    /// Flips edges until no flip makes a least angle larger.
-    pub(crate) fn flip(&mut self) {
-        for _ in 0..SWEEPS {
+    /// Flips edges until no flip makes a least angle larger; whether one did.
+    fn flip(&mut self) -> bool {
+        self.sweep(|shaping| {
             let mut has_flipped = false;
-            for edge in self.patch.inner_edges() {
-                has_flipped |= self.flip_edge(edge);
+            for edge in shaping.patch.inner_edges() {
+                has_flipped |= shaping.flip_edge(edge);
             }
-            if !has_flipped {
-                break;
-            }
-        }
+            has_flipped
+        })
     }
 
     fn flip_edge(&mut self, edge: [u32; 2]) -> bool {
@@ -239,9 +246,9 @@ impl<'a> Shaping<'a> {
         }
         let old: Vec<[u32; 3]> =
             self.patch.at_edge(edge).into_iter().map(|triangle| self.patch.corners(triangle)).collect();
-        let allowed = self.agreement(&old).min(self.tuning.least_cosine);
-        let is_good =
-            self.worst_angle(&new) > self.worst_angle(&old) + BETTER && self.agreement(&new) >= allowed;
+        // Most edges are good as they are: angles are asked for first.
+        let is_good = self.worst_angle(&new) > self.worst_angle(&old) + BETTER
+            && self.agreement(&new) >= self.agreement(&old).min(self.tuning.least_cosine);
         if is_good {
             self.patch.flip(edge, new);
         }
@@ -265,7 +272,7 @@ impl<'a> Shaping<'a> {
             }
             if weights > 0.0 {
                 let foot = self.reference.foot(sum / weights, self.feet[point as usize].triangle);
-                self.move_if(point, foot, &star, |_, _| true);
+                self.move_if(point, foot, &star, |_| true);
             }
         }
     }
@@ -274,19 +281,18 @@ impl<'a> Shaping<'a> {
         self.patch.star(point).iter().map(|triangle| self.patch.corners(*triangle)).collect()
     }
 
-    /// Moves a point, if its triangles lie to the surface as they should and their worst angles, before and after, are right; returns whether.
+    /// Moves a point, if its triangles then lie to the surface as they should, and `is_right` says so; returns whether.
     fn move_if(
         &mut self,
         point: u32,
         foot: Foot,
         star: &[[u32; 3]],
-        is_right: impl Fn(f64, f64) -> bool,
+        is_right: impl Fn(&Self) -> bool,
     ) -> bool {
         let old = (self.patch.place(point), self.feet[point as usize]);
         let allowed = self.agreement(star).min(self.tuning.least_cosine);
-        let before = self.worst_angle(star);
         self.put(point, foot);
-        let is_good = self.agreement(star) >= allowed && is_right(before, self.worst_angle(star));
+        let is_good = is_right(self) && self.agreement(star) >= allowed;
         if !is_good {
             self.patch.points[point as usize] = old.0;
             self.feet[point as usize] = old.1;
@@ -319,6 +325,7 @@ impl<'a> Shaping<'a> {
         let Foot { normal, size, .. } = self.feet[point as usize];
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
+        let before = self.worst_angle(star);
         for step in SEARCH_STEPS {
             let place = self.patch.place(point);
             let mut best = None;
@@ -326,8 +333,8 @@ impl<'a> Shaping<'a> {
                 let by = (across * x + along * y) * (step * size);
                 let foot = self.reference.foot(place + by, self.feet[point as usize].triangle);
                 let old = (self.patch.place(point), self.feet[point as usize]);
-                let wanted = best.map_or(f64::NEG_INFINITY, |(angle, _)| angle);
-                if self.move_if(point, foot, star, |before, after| after > before.max(wanted) + BETTER) {
+                let wanted = best.map_or(before, |(angle, _)| angle);
+                if self.move_if(point, foot, star, |shaping| shaping.worst_angle(star) > wanted + BETTER) {
                     best = Some((self.worst_angle(star), foot));
                     self.patch.points[point as usize] = old.0;
                     self.feet[point as usize] = old.1;
