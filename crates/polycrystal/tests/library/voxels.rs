@@ -109,13 +109,13 @@ fn nearest_seeds(seeds: &[[f64; 3]], depth: usize) -> Voxels {
     let nearest = |voxel: [usize; 3]| {
         let place = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5;
         let distance = |seed: &[f64; 3]| place.distance(DVec3::from_array(*seed) * 10.0);
-        (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).unwrap()
+        (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).expect("a seed")
     };
     let mut known = std::collections::BTreeMap::new();
     let [width, height, _] = shape;
     let mut labels = Vec::new();
     for index in 0..width * height * depth {
-        let count = u32::try_from(known.len()).unwrap();
+        let count = u32::try_from(known.len()).expect("few grains");
         let voxel = [index % width, index / width % height, index / width / height];
         labels.push(*known.entry(nearest(voxel)).or_insert(count));
     }
