@@ -24,12 +24,13 @@ const MIXED: Map = Map {
 const THIN: Map = Map { shape: &[5, 3, 3], labels: b"313111113131311112123333331312223222223123333" };
 
 /// A kind of refusal, a map, the options that are refused, and those after the remedy.
-const REMEDIES: [(&str, Map, &str, &str); 8] = [
+const REMEDIES: [(&str, Map, &str, &str); 9] = [
     ("MapProblem::Unfit", WITH_PORE, "--exterior-label 0 --fit-cells", "--exterior-label 0"),
     ("MapProblem::NoCells", RING, "--fit-cells", ""),
     ("MapProblem::Unfit, small grains", TWO, "--min-voxels 5", "--min-voxels 4"),
     ("ShortPeriod", TWO, "--periodic x", ""),
     ("EndlessGrain", BANDS, "--periodic x,y", "--periodic y"),
+    ("MapProblem::Crop", TWO, "--crop 0:2,0:5", "--crop 0:2,0:4"),
     ("MixedVoxels", MIXED, "--parts split", "--parts split --min-voxels 4"),
     ("RelaxesFolded", THIN, "--relax 0.05", ""),
     ("PeriodicPores", ISLAND, "--exterior-label 0 --periodic x,y", "--exterior-label 0"),

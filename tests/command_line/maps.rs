@@ -450,7 +450,10 @@ fn maps_that_cannot_be_used() {
             "volume_damask.vti --axes zyx",
             "volume_damask.vti: files of this format contain their order of axes; leave --axes out",
         ),
-        ("volume.npy --crop 0:25,0:9,0:9", "volume.npy: has 24 voxels along x; --crop asks for 0:25"),
+        (
+            "volume.npy --crop 0:25,0:9,0:9",
+            "volume.npy: has 24 voxels along x; --crop asks for 0:25; give a part of 0:24",
+        ),
         (
             "volume.npy --min-voxels 3000",
             "volume.npy: has no grain of 3000 or more voxels besides the exterior; lower --min-voxels, or correct --exterior-label",

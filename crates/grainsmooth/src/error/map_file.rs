@@ -166,7 +166,7 @@ pub enum MapProblem {
         option: &'static str,
     },
     /// A part of the map is asked for that it does not have.
-    #[error("has {count} voxels along {axis}; --crop asks for {first}:{end}")]
+    #[error("has {count} voxels along {axis}; --crop asks for {first}:{end}; give a part of 0:{count}")]
     Crop {
         /// The axis.
         axis: char,
