@@ -69,7 +69,8 @@ fn damaged_maps_are_read_or_refused() {
         let path = folder.path().join(name);
         std::fs::copy(data.join(name), &path).unwrap();
         let refused = refused_when_damaged(&path);
-        assert!(refused > 20, "{name}: {refused}");
+        // At least those that are cut off.
+        assert!(refused >= 50, "{name}: {refused}");
     }
     let head = std::fs::read_to_string(data.join("volume.mhd")).unwrap();
     let path = folder.path().join("volume.mha");
