@@ -71,7 +71,7 @@ impl Faulty {
 }
 
 impl Decimation<'_> {
-    /// The surface with a part of its points, which move so that grains have their volumes; those that are held are all there.
+    /// The surface with a part of its points, which move so that grains have their volumes; those that are held are all there, in their places.
     ///
     /// Small grains keep shorter edges.
     pub(super) fn decimated(&self, is_held: &[bool]) -> VoxelSurface {
@@ -116,17 +116,23 @@ impl Decimation<'_> {
         };
         let places: Vec<UVec3> = kept.iter().map(|point| places[*point as usize]).collect();
         let points = kept.iter().map(|point| points[*point as usize]).collect();
-        let points = self.with_volumes(points, &places, &cut);
+        let stays = kept.iter().map(|point| is_held[*point as usize]).collect();
+        let points = self.with_volumes(points, stays, &places, &cut);
         VoxelSurface { points, places, cut }
     }
 
     /// The points that are left, moved so that grains have their volumes. Where boundaries would fold by that, points stay if the others can make up for it.
-    fn with_volumes(&self, left: Vec<DVec3>, places: &[UVec3], cut: &CutFaces) -> Vec<DVec3> {
+    fn with_volumes(
+        &self,
+        left: Vec<DVec3>,
+        mut stays: Vec<bool>,
+        places: &[UVec3],
+        cut: &CutFaces,
+    ) -> Vec<DVec3> {
         let boxes = Boxes::new(places, self.lattice, self.tuning.within_when_decimated);
         let search = VolumeSearch::new(left.len(), cut, self.wanted, self.tuning);
         let neighbors = Adjacency::of_elements(cut.elements(), &cut.kind_of).inner.pairs();
         let folded: BTreeSet<[u32; 2]> = cut.folds(&left, &neighbors).into_iter().collect();
-        let mut stays = vec![false; left.len()];
         let mut best = None;
         loop {
             let mut points = left.clone();
