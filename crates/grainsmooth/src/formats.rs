@@ -3,14 +3,14 @@
 mod ang;
 mod bdf;
 mod blocks;
-mod connected;
+pub(crate) mod connected;
 mod ctf;
 mod dream3d;
 pub(crate) mod embedded_config;
 mod euler;
 mod evolver;
 pub(crate) mod format;
-mod gmsh;
+pub(crate) mod gmsh;
 mod grain_table;
 mod grains;
 mod hexahedra;

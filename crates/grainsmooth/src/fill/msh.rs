@@ -13,11 +13,10 @@ use crate::volume_mesh::{VolumeMesh, volume};
 /// Gmsh's code for tetrahedra.
 const TETRAHEDRON: usize = 4;
 
-/// Reads tetrahedra between points of a surface, which have its numbers, counted from 1, and those of physical volumes, counted so too.
-pub(super) fn read(text: &str, surface: &[DVec3]) -> Result<VolumeMesh, String> {
-    let physical = physical_volumes(text)?;
+/// Reads tetrahedra between points of a surface, which have its numbers, counted from 1, in volumes of these grains, counted so too.
+pub(super) fn read(text: &str, surface: Vec<DVec3>, grain_of: &[GrainId]) -> Result<VolumeMesh, String> {
     // Those of the surface stay bit for bit as they were; those inside follow in their order.
-    let mut points = surface.to_vec();
+    let (surface_points, mut points) = (surface.len(), surface);
     let mut inner = BTreeMap::new();
     let mut lines = section(text, "$Nodes")?;
     let [blocks, ..] = numbers(&mut lines)?[..] else { return Err("Gmsh wrote no nodes".to_owned()) };
@@ -30,7 +29,7 @@ pub(super) fn read(text: &str, surface: &[DVec3]) -> Result<VolumeMesh, String> 
         for tag in tags {
             let words = lines.next().unwrap_or_default().split(' ');
             let place: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
-            if tag > surface.len() {
+            if tag > surface_points {
                 let place = <[f64; 3]>::try_from(place).map_err(|_| "Gmsh wrote a broken node".to_owned())?;
                 inner.insert(tag, DVec3::from(place));
             }
@@ -40,8 +39,8 @@ pub(super) fn read(text: &str, surface: &[DVec3]) -> Result<VolumeMesh, String> 
     points.extend(inner.into_values());
     let point = |tag: usize| {
         let place = match tags.binary_search(&tag) {
-            Ok(place) => Some(surface.len() + place),
-            Err(_) => tag.checked_sub(1).filter(|place| *place < surface.len()),
+            Ok(place) => Some(surface_points + place),
+            Err(_) => tag.checked_sub(1).filter(|place| *place < surface_points),
         };
         place.and_then(|place| u32::try_from(place).ok()).ok_or_else(|| format!("Gmsh wrote no node {tag}"))
     };
@@ -65,30 +64,13 @@ pub(super) fn read(text: &str, surface: &[DVec3]) -> Result<VolumeMesh, String> 
                 corners.swap(0, 1);
             }
             tetrahedra.push(corners);
-            let grain = physical.get(&entity).and_then(|grain| u32::try_from(grain.checked_sub(1)?).ok());
-            grains.push(GrainId(grain.ok_or("Gmsh wrote a tetrahedron of no grain")?));
+            let grain = entity.checked_sub(1).and_then(|volume| grain_of.get(volume));
+            grains.push(*grain.ok_or("Gmsh wrote a tetrahedron of no grain")?);
         }
     }
-    let mut mesh =
-        VolumeMesh { surface_points: surface.len(), points, tetrahedra, grains, ..VolumeMesh::default() };
+    let mut mesh = VolumeMesh { surface_points, points, tetrahedra, grains, ..VolumeMesh::default() };
     mesh.sort_by_grain();
     Ok(mesh)
-}
-
-/// The physical volume of each volume, by their numbers.
-fn physical_volumes(text: &str) -> Result<BTreeMap<usize, usize>, String> {
-    let mut lines = section(text, "$Entities")?;
-    let [points, curves, surfaces, volumes] = numbers(&mut lines)?[..] else {
-        return Err("Gmsh wrote no volumes".to_owned());
-    };
-    let mut physical = BTreeMap::new();
-    for line in lines.skip(points + curves + surfaces).take(volumes) {
-        // Number, box, how many physical volumes it is part of, the first of them.
-        let words: Vec<&str> = line.split(' ').collect();
-        let (Some(tag), Some(of)) = (words.first(), words.get(8)) else { continue };
-        physical.insert(number(tag)?, number(of)?);
-    }
-    Ok(physical)
 }
 
 /// The lines of a section.
@@ -113,17 +95,18 @@ mod tests {
     #[test]
     fn nodes_of_the_surface_keep_their_bits_and_tetrahedra_their_grains() {
         let surface = [DVec3::ZERO, DVec3::X * (1.0 / 3.0), DVec3::Y, DVec3::Z];
-        let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 1 2\n1 0 0 0 0\n1 0 0 0 1 1 1 0 0\n\
-            1 0 0 0 1 1 1 1 2 1 1\n5 0 0 0 1 1 1 1 1 1 1\n$EndEntities\n\
-            $Nodes\n2 5 1 9\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n0.3333333333 0 0\n0 1 0\n0 0 1\n3 1 0 1\n9\n0.1 0.1 0.1\n$EndNodes\n\
-            $Elements\n3 3 1 3\n2 1 2 1\n1 1 2 3\n3 1 4 1\n2 2 1 3 9\n3 5 4 1\n3 1 2 9 4\n$EndElements\n";
-        let mesh = read(text, &surface).expect("a mesh");
+        let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n2 5 1 9\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n0.3333333333 0 0\n0 1 0\n0 0 1\n3 1 0 1\n9\n0.1 0.1 0.1\n$EndNodes\n\
+            $Elements\n3 3 1 3\n2 1 2 1\n1 1 2 3\n3 1 4 1\n2 2 1 3 9\n3 2 4 1\n3 1 2 9 4\n$EndElements\n";
+        let mesh = read(text, surface.to_vec(), &[GrainId(1), GrainId(0)]).expect("a mesh");
         assert_eq!(mesh.points[..4], surface);
         assert_eq!(mesh.points[4], DVec3::splat(0.1));
-        // The second is part of physical volume 1, and so comes first.
+        // The second is of the first grain, and so comes first.
         assert_eq!(mesh.grains, [GrainId(0), GrainId(1)]);
         assert!(mesh.tetrahedra[0].contains(&3) && !mesh.tetrahedra[1].contains(&3));
         assert!((0..2).all(|tetrahedron| volume(mesh.corners(tetrahedron)) > 0.0));
-        assert!(read("$Nodes\nx\n", &surface).is_err() && read("", &surface).is_err());
+        assert!(
+            read("$Nodes\nx\n", surface.to_vec(), &[]).is_err()
+                && read(text, surface.to_vec(), &[GrainId(0)]).is_err()
+        );
     }
 }

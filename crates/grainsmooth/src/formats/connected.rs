@@ -73,20 +73,20 @@ pub(crate) fn pieces_of_grain(surface: &Surface<'_>, parts: &[(usize, bool)]) ->
 }
 
 /// The volume within a closed surface.
-fn volume(surface: &Surface<'_>, shell: &[(usize, bool)]) -> f64 {
+pub(crate) fn volume(surface: &Surface<'_>, shell: &[(usize, bool)]) -> f64 {
     // Near the surface, so that no digits cancel far from the origin.
     let origin = bounds(surface, shell).start;
     let of_part = |&(part, is_inward): &(usize, bool)| {
         let triangles = surface.triangles_of(&surface.parts[part]);
         let triangles = triangles.map(|triangle| surface.corners(triangle).map(|corner| corner - origin));
-        let cones: f64 = triangles.map(|[a, b, c]| a.dot(b.cross(c))).sum();
+        let cones: f64 = triangles.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
         if is_inward { -cones } else { cones }
     };
     shell.iter().map(of_part).sum()
 }
 
 /// The corners of the box around a closed surface.
-fn bounds(surface: &Surface<'_>, shell: &[(usize, bool)]) -> Range<DVec3> {
+pub(crate) fn bounds(surface: &Surface<'_>, shell: &[(usize, bool)]) -> Range<DVec3> {
     let points = shell.iter().flat_map(|(part, _)| surface.triangles_of(&surface.parts[*part]).flatten());
     let points = points.map(|point| surface.points[point as usize]);
     let (lower, upper) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lower, upper), point| {

@@ -29,7 +29,7 @@ use crate::{Error, Polycrystal, StagedFiles};
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
-const TRIANGLE: u32 = 2;
+pub(crate) const TRIANGLE: u32 = 2;
 const POINT: u32 = 15;
 
 /// The extension of the script beside a mesh, which names what it holds.
