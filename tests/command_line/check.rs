@@ -346,6 +346,20 @@ fn files_that_are_no_networks_are_refused() {
         FAILED,
         "seeds.xyz: unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.dream3d, *.json or *.csv",
     );
+    workplace.put("elements.xdmf", "<Xdmf/>\n");
+    workplace.refuses(
+        "check elements.xdmf",
+        FAILED,
+        "elements.xdmf: elements in .xdmf are only written; to check them, write and give a .vtu, .msh, .inp or .bdf, and for the network a .vtp",
+    );
+    let cube = "# vtk DataFile Version 3.0\nvoxels\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
+        0 0 1\n1 0 1\n1 1 1\n0 1 1\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n";
+    workplace.put("cube.vtk", cube);
+    workplace.refuses(
+        "check cube.vtk",
+        FAILED,
+        "cube.vtk: cell 0 is a Hexahedron, not a triangle of a boundary; give the boundaries of the network, such as a .vtp, or of voxels their labels as a .vti to `grainsmooth smooth`",
+    );
     workplace.put("plain.vtk", Cubes::new().file("Other"));
     workplace.refuses(
         "check plain.vtk",

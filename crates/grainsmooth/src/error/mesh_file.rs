@@ -116,6 +116,21 @@ pub enum MeshFileProblem {
         /// How many corners it has.
         corners: usize,
     },
+    /// Elements of another kind than triangles, where boundaries are wanted.
+    #[error(
+        "cell {cell} is a {kind}, not a triangle of a boundary; give the boundaries of the network, such as a .vtp, or of voxels their labels as a .vti to `grainsmooth smooth`"
+    )]
+    NotABoundary {
+        /// The cell, counted from 0.
+        cell: usize,
+        /// What VTK calls it.
+        kind: String,
+    },
+    /// Elements in a format that is written and not read.
+    #[error(
+        "elements in .xdmf are only written; to check them, write and give a .vtu, .msh, .inp or .bdf, and for the network a .vtp"
+    )]
+    ElementsOnlyWritten,
     /// The extension names no format that can hold a network.
     #[error(
         "unknown extension; give a network as *.vtp, *.vtu, *.vtk, *.tess, *.stl, *.fe, *.dmp, *.dream3d, *.json or *.csv"

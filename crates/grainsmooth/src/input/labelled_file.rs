@@ -110,7 +110,13 @@ impl LabelledFile {
         let cells = if stl_set::is_known(path) {
             stl_set::read(path)?
         } else {
-            let read = reader(path).ok_or(MeshFileProblem::NotANetworkFormat)?;
+            let unknown = || match path.extension() {
+                Some(extension) if extension.eq_ignore_ascii_case("xdmf") => {
+                    MeshFileProblem::ElementsOnlyWritten
+                }
+                _ => MeshFileProblem::NotANetworkFormat,
+            };
+            let read = reader(path).ok_or_else(unknown)?;
             read(&std::fs::read(path).map_err(MeshFileProblem::Unreadable)?)?
         };
         check_lengths(&cells.mesh.points)?;

@@ -155,7 +155,8 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
                     _ => false,
                 };
                 if !fits {
-                    return Err(problem(format!("cell {index} is a {kind:?} in a surface")));
+                    let (cell, kind) = (index, format!("{kind:?}"));
+                    return Err(MeshFileProblem::NotABoundary { cell, kind });
                 }
                 found.mesh.add_face(0, cell?)?;
             }
