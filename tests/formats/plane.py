@@ -36,9 +36,7 @@ def check_middles(places, elements):
         ends = places[elements[:, k]], places[elements[:, (k + 1) % 3]]
         away = np.linalg.norm(places[elements[:, 3 + k]] - 0.5 * (ends[0] + ends[1]), axis=1)
         lengths = np.linalg.norm(ends[0] - ends[1], axis=1)
-        # Where a line ends at a plane that cuts grains, a piece of a fifteenth of others is bent by 0.25.
-        bound = np.where(lengths < 0.1 * np.median(lengths), 0.3, 0.2)
-        assert (away < bound * lengths).all()
+        assert (away < 0.2 * lengths).all()
 
 
 # VTK and meshio.
