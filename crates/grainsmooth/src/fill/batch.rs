@@ -39,8 +39,7 @@ impl<'a> Batch<'a> {
         for (grain, parts) in (0u32..).map(GrainId).zip(surface.parts_of_grains(grain_count)) {
             pieces.extend(pieces_of_grain(surface, &parts).into_iter().map(|parts| {
                 let bounds = bounds(surface, &parts);
-                let triangles =
-                    parts.iter().map(|(part, _)| surface.numbers_of(&surface.parts[*part]).len()).sum();
+                let triangles = parts.iter().map(|(part, _)| triangle_count(surface, *part)).sum();
                 Piece { grain, parts, centre: bounds.start.midpoint(bounds.end), triangles }
             }));
         }
@@ -91,13 +90,9 @@ impl<'a> Batch<'a> {
         self.surface.triangles_of(&self.surface.parts[part]).map(move |corners| corners.map(own))
     }
 
-    fn triangle_count(&self, part: usize) -> usize {
-        self.surface.numbers_of(&self.surface.parts[part]).len()
-    }
-
     /// Number of triangles.
     pub(super) fn count(&self) -> usize {
-        self.parts.iter().map(|part| self.triangle_count(*part)).sum()
+        self.parts.iter().map(|part| triangle_count(self.surface, *part)).sum()
     }
 
     /// The edges of all triangles, the lower end first.
@@ -126,7 +121,7 @@ impl<'a> Batch<'a> {
         writeln!(out, "$EndNodes\n$Elements\n{parts} {triangles} 1 {triangles}")?;
         let mut element = 1u64..;
         for part in &self.parts {
-            writeln!(out, "2 {} {TRIANGLE} {}", part + 1, self.triangle_count(*part))?;
+            writeln!(out, "2 {} {TRIANGLE} {}", part + 1, triangle_count(self.surface, *part))?;
             for ([a, b, c], element) in self.triangles_of(*part).zip(&mut element) {
                 writeln!(out, "{element} {} {} {}", a + 1, b + 1, c + 1)?;
             }
@@ -147,6 +142,10 @@ impl<'a> Batch<'a> {
         }
         writeln!(out, "Physical Volume(1) = {{1:{}}};", self.pieces.len())
     }
+}
+
+fn triangle_count(surface: &Surface<'_>, part: usize) -> usize {
+    surface.numbers_of(&surface.parts[part]).len()
 }
 
 /// Halves pieces across the longest side of the box around them, until no more triangles than this are around each batch.

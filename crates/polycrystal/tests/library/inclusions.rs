@@ -15,7 +15,7 @@ const INCLUSIONS: usize = 12;
 const SHARE: f64 = 0.03;
 
 /// Numbers from 0 to 1 by a linear congruential generator (Knuth's constants).
-fn fractions(seed: u64) -> impl FnMut() -> f64 {
+pub fn fractions(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
