@@ -6,7 +6,8 @@ use crate::common::{network, network_of_regular, random_network, random_seeds, r
 use glam::{BVec3, DVec3};
 use polycrystal::{
     Boundary, FaceMesh, GrainId, Junctions, Mesh, Network, NetworkError, Relaxation, Side, TriangleQuality,
-    dihedral_angles, folded_edges, regular_cells, relax, remove_short_edges, validate,
+    Tuning, Volumes, dihedral_angles, folded_edges, regular_cells, relax, relax_tuned, remove_short_edges,
+    validate,
 };
 use proptest::prelude::*;
 use voronoi::{Domain, Tessellation};
@@ -454,15 +455,20 @@ proptest! {
         let seeds = random_seeds(&Domain::unit_cube(), 20, random_seed);
         let mut rotated = seeds.clone();
         rotated.rotate_left(translation % 20);
+        // The search for wide triangles makes of rounding what can be seen, of points inside boundaries: it may take 100 steps.
+        let not_widened = Tuning { widening: 0.0, ..Tuning::default() };
         let mean_point_and_volumes = |seeds: &[DVec3]| {
             let (network, flat) = network(&Domain::unit_cube(), seeds, 1);
-            let points = relaxed(&network, &flat);
-            (points.iter().sum::<DVec3>() / points.len() as f64, network.grain_volumes(network.finest(), &points))
+            let (time, kept) = (Relaxation::KEPT_TOPOLOGY, Volumes::Kept);
+            let flow = relax_tuned(&network, &flat, &time, kept, &not_widened, |_| ()).expect("relaxes");
+            let points = flow.finest_points(&network);
+            let volumes = network.grain_volumes(network.finest(), &relaxed(&network, &flat));
+            (points.iter().sum::<DVec3>() / points.len() as f64, volumes)
         };
         let (place, mut volumes) = mean_point_and_volumes(&seeds);
         let (rotated_place, rotated_volumes) = mean_point_and_volumes(&rotated);
         volumes.rotate_left(translation % 20);
-        prop_assert!(place.distance(rotated_place) < 1e-8);
+        prop_assert!(place.distance(rotated_place) < 1e-10, "{}", place.distance(rotated_place));
         for (a, b) in volumes.iter().zip(&rotated_volumes) {
             prop_assert!((a - b).abs() < 1e-12);
         }
