@@ -10,6 +10,7 @@ mod elements;
 mod graph;
 mod labels;
 mod lattice;
+mod neighbors;
 mod pattern;
 mod slabs;
 mod staircase;

@@ -1,15 +1,18 @@
 //! Fewer and better triangles for boundaries that many small polygons make up.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 use voronoi::{Domain, PeriodicVertex, Side, Translation};
+
+use crate::mesh::triangle_quality::squared_sine;
 
 /// How much a triangle may turn when one of its corners moves along an edge, or an edge of it flips, as the cosine of the angle: 60 degrees.
 const LEAST_COSINE: f64 = 0.5;
 
-/// Edges of thinner triangles than this, in degrees, are not made, but by a collapse that leaves no thinner ones than there were.
-const GOOD_ANGLE: f64 = 15.0;
+/// Square of the sine of an angle (15 degrees): edges of thinner triangles are not made, but by a collapse that leaves no thinner ones than there were.
+const GOOD: f64 = 0.067;
+
+/// Share by which a flip has to make the square of the sine of the least angle larger, so that flips end.
+const GAIN: f64 = 1e-3;
 
 /// Cosines of angles between the normals of two triangles at an edge that are not made, nor made less: inside a boundary folds by more than 72 degrees, between
 /// different ones angles below 26.
@@ -168,9 +171,15 @@ impl Coarsening<'_> {
 
     /// Whether an edge lies inside a boundary.
     fn is_inside(&self, ends: [PeriodicVertex; 2]) -> bool {
-        let mut at_edge = self.at_edge(ends).map(|(triangle, moved)| self.sides_from(triangle, moved));
-        let [first, second, third] = std::array::from_fn(|_| at_edge.next());
-        first.is_some() && first == second && third.is_none()
+        let mut at_edge = self.at_edge(ends);
+        let [Some(first), Some(second), None] = std::array::from_fn(|_| at_edge.next()) else { return false };
+        self.are_in_one_boundary(&[first, second])
+    }
+
+    /// Whether the triangles at an edge are two, with the same on both sides.
+    fn are_in_one_boundary(&self, at_edge: &[AtEdge]) -> bool {
+        let [first, second] = at_edge else { return false };
+        self.sides_from(first.0, first.1) == self.sides_from(second.0, second.1)
     }
 
     /// What lies beside a triangle, as seen from where all is moved.
@@ -180,6 +189,14 @@ impl Coarsening<'_> {
 
     fn part(&self, point: u32) -> Part {
         let own = PeriodicVertex { vertex: point, translation: Translation::ZERO };
+        let mut sides = self.at_points[point as usize]
+            .iter()
+            .map(|triangle| self.sides_from(*triangle, translation_of(self.corners(*triangle), point)));
+        // Most points are inside a boundary, which is quick to tell.
+        let first = sides.next();
+        if sides.all(|sides| Some(sides) == first) {
+            return Part::Boundary;
+        }
         let mut along = self.beside(point);
         along.retain(|other| !self.is_inside([own, *other]));
         match along[..] {
@@ -284,16 +301,18 @@ impl Coarsening<'_> {
     /// that share an edge, inside a boundary and between two.
     fn sharpest(&self, triangles: &[u32]) -> [f64; 2] {
         let mut least: [f64; 2] = [1.0; 2];
+        let mut around: Vec<AtEdge> = Vec::new();
         for triangle in triangles {
             let Some(corners) = self.triangles[*triangle as usize] else { continue };
             for ends in edges(corners) {
-                let least = &mut least[usize::from(!self.is_inside(ends))];
+                around.clear();
+                around.extend(self.at_edge(ends));
+                let least = &mut least[usize::from(!self.are_in_one_boundary(&around))];
                 let away =
                     |(triangle, moved): AtEdge| self.away_from(ends.map(|end| end.moved(moved)), triangle);
                 let is_own = |other: &AtEdge| other.0 == *triangle;
-                let Some(own) = self.at_edge(ends).find(is_own) else { continue };
-                let own = away(own);
-                for other in self.at_edge(ends).filter(|other| !is_own(other)) {
+                let Some(own) = around.iter().copied().find(is_own).map(away) else { continue };
+                for other in around.iter().copied().filter(|other| !is_own(other)) {
                     *least = least.min(-own.dot(away(other)));
                 }
             }
@@ -326,12 +345,12 @@ impl Coarsening<'_> {
     fn is_good(&self, moved: &[(u32, [PeriodicVertex; 3])], ends: [PeriodicVertex; 2]) -> bool {
         let before = self.at_points[ends[0].vertex as usize].iter();
         let thinnest =
-            before.map(|triangle| self.least_angle(self.corners(*triangle))).fold(f64::INFINITY, f64::min);
+            before.map(|triangle| self.squared_sine(self.corners(*triangle))).fold(f64::INFINITY, f64::min);
         let limit = self.limit(ends).unwrap_or(0.0);
         moved.iter().all(|(triangle, new)| {
             let old = self.corners(*triangle);
             let is_alike = self.lies_alike(old, *new) || self.is_narrow(old, limit);
-            self.least_angle(*new) > thinnest.min(GOOD_ANGLE) && is_alike
+            self.squared_sine(*new) > thinnest.min(GOOD) && is_alike
         })
     }
 
@@ -352,14 +371,9 @@ impl Coarsening<'_> {
         (b - a).cross(c - a)
     }
 
-    /// In degrees.
-    fn least_angle(&self, corners: [PeriodicVertex; 3]) -> f64 {
-        let places = corners.map(|corner| self.place(corner));
-        let angle = |corner: usize| {
-            let [a, b] = [1, 2].map(|step| places[(corner + step) % 3] - places[corner]);
-            a.cross(b).length().atan2(a.dot(b)).to_degrees()
-        };
-        angle(0).min(angle(1)).min(angle(2))
+    /// The square of the sine of a triangle's least angle.
+    fn squared_sine(&self, corners: [PeriodicVertex; 3]) -> f64 {
+        squared_sine(corners.map(|corner| self.place(corner)))
     }
 
     /// Whether around the end of an edge that collapses each grain's surface is still one closed fan, and no two triangles have the same corners.
@@ -369,7 +383,7 @@ impl Coarsening<'_> {
         to: u32,
         collapses: impl Fn(&u32) -> bool,
     ) -> bool {
-        let mut rims: BTreeMap<Side, Vec<[PeriodicVertex; 2]>> = BTreeMap::new();
+        let mut rims: Vec<(Side, [PeriodicVertex; 2])> = Vec::new();
         let mut all: Vec<[PeriodicVertex; 3]> = Vec::new();
         let there = self.at_points[to as usize].iter().filter(|triangle| !collapses(triangle));
         let there = there.map(|triangle| (*triangle, self.corners(*triangle)));
@@ -381,15 +395,15 @@ impl Coarsening<'_> {
                 return false;
             }
             let sides = self.sides_from(triangle, translation_of(corners, to)).into_iter();
-            for side in sides.filter(|side| !matches!(side, Side::Wall(_))) {
-                rims.entry(side).or_default().push(rim);
-            }
+            rims.extend(sides.filter(|side| !matches!(side, Side::Wall(_))).map(|side| (side, rim)));
             seen.sort_unstable();
             all.push(seen);
         }
         all.sort_unstable();
+        rims.sort_unstable();
+        let mut rims = rims.chunk_by(|one, other| one.0 == other.0);
         // A boundary that collapses wholly leaves its grains to meet in a line.
-        all.windows(2).all(|pair| pair[0] != pair[1]) && rims.values().all(|rim| is_cycle(rim))
+        all.windows(2).all(|pair| pair[0] != pair[1]) && rims.all(is_cycle)
     }
 
     /// Flips edges inside boundaries that make the least angle of their two triangles larger, and returns how many.
@@ -424,11 +438,10 @@ impl Coarsening<'_> {
         }
         let (left, right) = ([top, from, bottom], [top, bottom, to]);
         let [before, after] = [[one, other], [left, right]].map(|pair| {
-            pair.into_iter().map(|corners| self.least_angle(corners)).fold(f64::INFINITY, f64::min)
+            pair.into_iter().map(|corners| self.squared_sine(corners)).fold(f64::INFINITY, f64::min)
         });
         let is_alike = |new| self.lies_alike(one, new) && self.lies_alike(other, new);
-        // Some more, so that flips end.
-        if after < before + 0.01 || !is_alike(left) || !is_alike(right) {
+        if after <= before * (1.0 + GAIN) || !is_alike(left) || !is_alike(right) {
             return false;
         }
         let right = right.map(|corner| corner.moved(apart));
@@ -461,23 +474,24 @@ fn with_corner_moved(corners: [PeriodicVertex; 3], from: u32, to: PeriodicVertex
     corners.map(|corner| if corner.vertex == from { to.moved(corner.translation) } else { corner })
 }
 
-/// Whether segments make up one closed line that passes no point twice.
-fn is_cycle(segments: &[[PeriodicVertex; 2]]) -> bool {
-    let mut ends: BTreeMap<PeriodicVertex, Vec<PeriodicVertex>> = BTreeMap::new();
-    for [from, to] in segments {
-        ends.entry(*from).or_default().push(*to);
-        ends.entry(*to).or_default().push(*from);
-    }
-    if segments.len() < 3 || ends.values().any(|others| others.len() != 2) {
-        return false;
-    }
-    let start = segments[0][0];
-    let (mut before, mut at, mut count) = (start, ends[&start][0], 1);
+/// Whether segments, all with the same first part, make up one closed line that passes no point twice.
+fn is_cycle(segments: &[(Side, [PeriodicVertex; 2])]) -> bool {
+    let mut ends: Vec<[PeriodicVertex; 2]> =
+        segments.iter().flat_map(|(_, [from, to])| [[*from, *to], [*to, *from]]).collect();
+    ends.sort_unstable();
+    let others = |of: PeriodicVertex| {
+        let first = ends.partition_point(|[from, _]| *from < of);
+        let mut others = ends[first..].iter().take_while(|[from, _]| *from == of).map(|[_, to]| *to);
+        let [Some(one), Some(other), None] = std::array::from_fn(|_| others.next()) else { return None };
+        Some([one, other])
+    };
+    let start = ends[0][0];
+    let (mut before, mut at, mut count) = (start, ends[0][1], 1);
     while at != start {
-        let others = &ends[&at];
-        let next = if others[0] == before { others[1] } else { others[0] };
+        let Some([one, other]) = others(at) else { return false };
+        let next = if one == before { other } else { one };
         (before, at) = (at, next);
         count += 1;
     }
-    count == ends.len()
+    count == segments.len() && count > 2 && others(start).is_some()
 }

@@ -7,7 +7,6 @@ use voronoi::{Domain, PeriodicVertex};
 
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
-use crate::mesh::adjacency::Adjacency;
 use crate::mesh::id::id;
 use crate::network::grain_complex::limits;
 use crate::network::line_coarsening::coarsened_segments;
@@ -16,6 +15,7 @@ use crate::voxels::copies::Copies;
 use crate::voxels::elements::{CutFaces, ElementList};
 use crate::voxels::labels::Voxels;
 use crate::voxels::lattice::Lattice;
+use crate::voxels::neighbors::Neighbors;
 use crate::voxels::slabs::Slabs;
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
@@ -121,7 +121,7 @@ impl Decimation<'_> {
         VoxelSurface { points, places, cut }
     }
 
-    /// The points that are left, moved so that grains have their volumes. Where boundaries would fold by that, points stay if the others can make up for it.
+    /// The points that are left, moved so that grains have their volumes. Where boundaries would fold or cross by that, points stay if the others can make up for it.
     fn with_volumes(
         &self,
         left: Vec<DVec3>,
@@ -131,8 +131,12 @@ impl Decimation<'_> {
     ) -> Vec<DVec3> {
         let boxes = Boxes::new(places, self.lattice, self.tuning.within_when_decimated);
         let search = VolumeSearch::new(left.len(), cut, self.wanted, self.tuning);
-        let neighbors = Adjacency::of_elements(cut.elements(), &cut.kind_of).inner.pairs();
-        let folded: BTreeSet<[u32; 2]> = cut.folds(&left, &neighbors).into_iter().collect();
+        let neighbors = Neighbors::new(&search);
+        let faults = |points: &[DVec3]| {
+            let pairs = neighbors.folds(points).into_iter().chain(neighbors.crossings(points));
+            pairs.collect::<BTreeSet<[u32; 2]>>()
+        };
+        let known = faults(&left);
         let mut best = None;
         loop {
             let mut points = left.clone();
@@ -140,13 +144,12 @@ impl Decimation<'_> {
             if error > VOLUME_TOLERANCE {
                 return best.unwrap_or(points);
             }
-            let mut folds = cut.folds(&points, &neighbors);
-            folds.retain(|pair| !folded.contains(pair));
-            if folds.is_empty() {
+            let new: Vec<[u32; 2]> = faults(&points).difference(&known).copied().collect();
+            if new.is_empty() {
                 return points;
             }
             // In each round some more do: two elements of which all stays are as they were.
-            cut.points_of(&folds).for_each(|point| stays[point as usize] = true);
+            cut.points_of(&new).for_each(|point| stays[point as usize] = true);
             best = Some(points);
         }
     }

@@ -6,7 +6,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::PeriodicVertex;
 
-use crate::check::folds::folded_pairs;
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::voxels::copies::Copies;
@@ -67,11 +66,6 @@ impl CutFaces {
                 Self { elements: ElementList::Segments(segments), kind_of, copies }
             }
         }
-    }
-
-    /// Those of some pairs of elements that are folded.
-    pub(super) fn folds(&self, points: &[DVec3], pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        folded_pairs(pairs, &self.elements().normals(&self.copies.with_copies(points)), 0.0)
     }
 
     /// The points of the lattice at some pairs of elements, some more than once.

@@ -4,13 +4,11 @@ use cancellation::check_cancelled;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::check::intersections::{boundary_boxes, crossing_elements};
-use crate::mesh::adjacency::{Adjacency, Inner};
-use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::Grouped;
 use crate::voxels::bending::Boxes;
 use crate::voxels::copies::across;
 use crate::voxels::graph::Graph;
+use crate::voxels::neighbors::Neighbors;
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volumes::VolumeSearch;
 
@@ -37,35 +35,17 @@ struct Untangled {
     volume_error: f64,
 }
 
-/// How elements meet.
-struct Neighbors<'a> {
-    adjacency: Adjacency<'a>,
-    boundaries: BoundaryElements<'a>,
-}
-
-impl Neighbors<'_> {
-    /// Pairs in one boundary.
-    fn pairs(&self) -> &[[u32; 2]] {
-        let Inner::Listed(pairs) = &self.adjacency.inner else {
-            unreachable!("the adjacency of loose elements is a list")
-        };
-        pairs
-    }
-}
-
 impl Untangling<'_> {
     /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
     ///
     /// Folds stay where grains are one voxel thick: a plate has a rim.
     pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
-        let surface = self.search.surface(&[]);
-        let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
-        let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface) };
+        let neighbors = Neighbors::new(self.search);
         let free = vec![false; points.len()];
         let mut best = self.without_crossings(points, free, volume_error, &neighbors);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, neighbors.pairs());
+            let is_held = self.smooth_folds(&mut points, &neighbors);
             let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
             if volume_error > VOLUME_TOLERANCE {
                 break;
@@ -90,48 +70,33 @@ impl Untangling<'_> {
         mut volume_error: f64,
         neighbors: &Neighbors<'_>,
     ) -> Untangled {
-        let mut home = None;
         for round in 0.. {
-            let Neighbors { adjacency, boundaries } = neighbors;
-            let crossings = {
-                let with_copies = self.search.cut.copies.with_copies(&points);
-                let now = self.search.surface(&with_copies);
-                crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries))
-            };
+            let crossings = neighbors.crossings(&points);
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = self.search.cut.folds(&points, neighbors.pairs());
+                let folds = neighbors.folds(&points);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
-            let home = home.get_or_insert_with(|| self.home());
             let marked = self.marked(&crossings, round / self.tuning.rounds_of_ring);
             for point in (0..points.len()).filter(|point| marked[*point]) {
                 is_held[point] = true;
-                points[point] = points[point].midpoint(home[point]);
+                let start = self.boxes.middle(point) + self.starts[point].as_dvec3();
+                points[point] = points[point].midpoint(start);
             }
             volume_error = self.search.restore(&mut points, self.boxes, &is_held);
         }
         unreachable!("rounds end")
     }
 
-    /// Where points start, moved so that grains have their volumes.
-    fn home(&self) -> Vec<DVec3> {
-        let start = |(point, start): (usize, &Vec3)| self.boxes.middle(point) + start.as_dvec3();
-        let mut home: Vec<DVec3> = self.starts.iter().enumerate().map(start).collect();
-        let free = vec![false; home.len()];
-        self.search.restore(&mut home, self.boxes, &free);
-        home
-    }
-
     /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
     ///
     /// Ends when a wider ring of points mends little.
-    fn smooth_folds(&self, points: &mut [DVec3], neighbors: &[[u32; 2]]) -> Vec<bool> {
+    fn smooth_folds(&self, points: &mut [DVec3], neighbors: &Neighbors<'_>) -> Vec<bool> {
         let mut is_moved = vec![false; points.len()];
         let mut before = usize::MAX;
         for ring in 0.. {
             for _ in 0..self.tuning.rounds_of_smoothing {
                 check_cancelled();
-                let folds = self.search.cut.folds(points, neighbors);
+                let folds = neighbors.folds(points);
                 if folds.is_empty() {
                     return is_moved;
                 }
@@ -152,7 +117,7 @@ impl Untangling<'_> {
                 );
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
             }
-            let left = self.search.cut.folds(points, neighbors).len();
+            let left = neighbors.folds(points).len();
             if ring == self.tuning.rings || 2 * left > before {
                 break;
             }

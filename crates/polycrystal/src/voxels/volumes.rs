@@ -1,6 +1,6 @@
 //! Points that give grains the volumes of their voxels.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use cancellation::check_cancelled;
 use glam::{BVec3, DVec3};
@@ -153,15 +153,17 @@ impl<'a> VolumeSearch<'a> {
     ) -> Vec<f64> {
         let point_count = self.at_points.count();
         let part = |first: usize| {
-            let mut part: BTreeMap<[u32; 2], f64> = BTreeMap::new();
+            // The order of its entries decides nothing: each is there once in a part.
+            let mut part: HashMap<[u32; 2], f64> = HashMap::new();
             let mut slopes = Slopes::default();
             for point in first..point_count.min(first + POINTS_AT_ONCE) {
                 self.find_slopes(&mut slopes, with_copies, point);
                 let is_bound = is_bound(point);
-                for (grain, slope) in &slopes.of_grains {
+                for (place, (grain, slope)) in slopes.of_grains.iter().enumerate() {
                     let free = DVec3::select(is_bound, DVec3::ZERO, *slope * slopes.mobility);
-                    for (other, along) in &slopes.of_grains {
-                        *part.entry([*grain, *other]).or_default() += free.dot(*along);
+                    for (other, along) in &slopes.of_grains[..=place] {
+                        let pair = [*grain.min(other), *grain.max(other)];
+                        *part.entry(pair).or_default() += free.dot(*along);
                     }
                 }
             }
@@ -172,6 +174,9 @@ impl<'a> VolumeSearch<'a> {
         let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
         for ([grain, other], value) in parts.into_iter().flatten() {
             *matrix[grain as usize].entry(other).or_default() += value;
+            if grain != other {
+                *matrix[other as usize].entry(grain).or_default() += value;
+            }
         }
         let apply = |multipliers: &[f64]| -> Vec<f64> {
             let row = |row: &BTreeMap<u32, f64>| {
