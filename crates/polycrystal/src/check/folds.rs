@@ -28,13 +28,10 @@ pub(crate) fn element_normals<'a>(level: impl Into<LevelView<'a>>, points: &[DVe
 /// ```
 pub fn folded_edges<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
     let level = level.into();
-    folded_pairs(&Adjacency::of_level(level).inner.pairs(), &element_normals(level, points), cosine)
-}
-
-/// Those of some pairs of elements that [`folded_edges`] finds, for normals of any length.
-pub(crate) fn folded_pairs(pairs: &[[u32; 2]], normals: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
+    let normals = element_normals(level, points);
     let normals = |pair: &[u32; 2]| pair.map(|element| normals[element as usize]);
-    pairs.par_iter().filter(|pair| is_folded(normals(pair), cosine)).copied().collect()
+    let pairs = Adjacency::of_level(level).inner.pairs();
+    pairs.into_par_iter().filter(|pair| is_folded(normals(pair), cosine)).collect()
 }
 
 /// The pairs of neighbours that are folded in some boundary, sorted, without normals of more than a boundary at a time.

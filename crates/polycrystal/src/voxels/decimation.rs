@@ -16,7 +16,7 @@ use crate::voxels::elements::{CutFaces, ElementList};
 use crate::voxels::labels::Voxels;
 use crate::voxels::lattice::Lattice;
 use crate::voxels::neighbors::Neighbors;
-use crate::voxels::slabs::Slabs;
+use crate::voxels::slabs::{Corners, Slabs};
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tuning::VoxelTuning;
@@ -79,26 +79,28 @@ impl Decimation<'_> {
         // Elements of copies go with their originals.
         let count = cut.kind_of.iter().take_while(|kind| kind.index() < self.kinds.len()).count();
         let kind_of = &cut.kind_of[..count];
-        let sides: Vec<[voronoi::Side; 2]> =
-            kind_of.iter().map(|kind| self.kinds[kind.index()].cell_sides()).collect();
+        let sides: Vec<[voronoi::Side; 2]> = self.kinds.iter().map(Kind::cell_sides).collect();
+        let sides_of = || kind_of.iter().map(|kind| &sides[kind.index()]);
         let vertex = |corner: u32| cut.copies.vertex(corner);
         let kinds_of = |is_left: &mut dyn Iterator<Item = bool>| -> Vec<BoundaryId> {
             kind_of.iter().zip(is_left).filter(|(_, is_left)| *is_left).map(|(kind, _)| *kind).collect()
         };
         let (kept, cut) = match &cut.elements {
             ElementList::Triangles(triangles) => {
-                let triangles: Vec<_> =
-                    triangles[..count].iter().map(|corners| corners.map(vertex)).collect();
-                let limits = self.limits(is_held, triangles.iter().map(|corners| &corners[..]).zip(&sides));
+                let mut left: Vec<Corners> =
+                    triangles[..count].iter().map(|corners| Some(corners.map(vertex))).collect();
+                let corners = left.iter().flatten().map(|corners| &corners[..]);
+                let limits = self.limits(is_held, corners.zip(sides_of()));
                 let slabs = Slabs {
                     domain: self.domain,
                     points,
                     limits: &limits,
+                    kind_of,
                     sides: &sides,
                     axis: self.lattice.longest_axis(),
                     thickness: self.tuning.slab * self.shortest_edge,
                 };
-                let left = slabs.coarsened(&triangles);
+                slabs.coarsen(&mut left);
                 let (kept, triangles) = renumbered(points.len(), &left);
                 let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));
                 let (triangles, copies) = self.unwrapped(kept.len(), &triangles, &mut kind_of);
@@ -106,7 +108,8 @@ impl Decimation<'_> {
             }
             ElementList::Segments(segments) => {
                 let segments: Vec<_> = segments[..count].iter().map(|ends| ends.map(vertex)).collect();
-                let limits = self.limits(is_held, segments.iter().map(|ends| &ends[..]).zip(&sides));
+                let limits = self.limits(is_held, segments.iter().map(|ends| &ends[..]).zip(sides_of()));
+                let sides: Vec<[voronoi::Side; 2]> = sides_of().copied().collect();
                 let left = coarsened_segments(self.domain, points, &limits, &segments, &sides);
                 let (kept, segments) = renumbered(points.len(), &left);
                 let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));

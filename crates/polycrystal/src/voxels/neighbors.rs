@@ -1,8 +1,9 @@
 //! How elements between voxels meet, and where they should not.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::check::folds::folded_pairs;
+use crate::check::folds::is_folded;
 use crate::check::intersections::{boundary_boxes, crossing_elements};
 use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
@@ -27,8 +28,11 @@ impl<'a> Neighbors<'a> {
         let Inner::Listed(pairs) = &self.adjacency.inner else {
             unreachable!("the adjacency of loose elements is a list")
         };
-        let with_copies = self.search.cut.copies.with_copies(points);
-        folded_pairs(pairs, &self.search.cut.elements().normals(&with_copies), 0.0)
+        let points = self.search.cut.copies.with_copies(points);
+        let elements = self.search.cut.elements();
+        // Three times the arithmetic of a list of all normals, which would be as large as half of all else.
+        let normals = |pair: &[u32; 2]| pair.map(|element| elements.normal(&points, element));
+        pairs.par_iter().filter(|pair| is_folded(normals(pair), 0.0)).copied().collect()
     }
 
     /// Pairs of elements that meet other than in points and edges that they share.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{Domain, PeriodicVertex, Side};
 
+use crate::BoundaryId;
 use crate::mesh::id::id;
 use crate::network::coarsening::coarsened_around;
 
@@ -13,12 +14,15 @@ pub(super) struct Slabs<'a> {
     pub(super) points: &'a [DVec3],
     /// Of each point: edges at it that are shorter collapse.
     pub(super) limits: &'a [Option<f64>],
+    pub(super) kind_of: &'a [BoundaryId],
+    /// Of each kind of triangle.
     pub(super) sides: &'a [[Side; 2]],
     pub(super) axis: usize,
     pub(super) thickness: f64,
 }
 
-type Corners = Option<[PeriodicVertex; 3]>;
+/// Of a triangle, while it is there.
+pub(super) type Corners = Option<[PeriodicVertex; 3]>;
 
 /// Of a point: it is in no slab yet, or in several.
 const NOWHERE: u32 = u32::MAX;
@@ -27,23 +31,21 @@ const SHARED: u32 = u32::MAX - 1;
 impl Slabs<'_> {
     /// As [`coarsened`](crate::network::coarsening::coarsened) with other choices near the borders of slabs; the number of threads decides nothing.
     ///
-    /// Points at borders stay at first. Then slabs begin half a thickness further up, and last come the points that stayed twice.
-    pub(super) fn coarsened(&self, triangles: &[[PeriodicVertex; 3]]) -> Vec<Corners> {
-        let mut left: Vec<Corners> = triangles.iter().copied().map(Some).collect();
+    /// Points at borders stay at first. Then slabs begin half a thickness further up, and last, in one slab, come the points that stayed twice.
+    pub(super) fn coarsen(&self, left: &mut [Corners]) {
         let mut marked = vec![true; self.points.len()];
-        for begin in [0.0, 0.5] {
-            self.coarsen_each(&mut left, &mut marked, begin);
+        for (thickness, begin) in [(self.thickness, 0.0), (self.thickness, 0.5), (f64::INFINITY, 0.0)] {
+            self.coarsen_each(left, &mut marked, thickness, begin);
         }
-        coarsened_around(self.domain, self.points, self.limits, left, self.sides, &mut marked)
     }
 
     /// Coarsens each slab by itself. Points stay marked where something may be left to do.
-    fn coarsen_each(&self, left: &mut [Corners], marked: &mut [bool], begin: f64) {
+    fn coarsen_each(&self, left: &mut [Corners], marked: &mut [bool], thickness: f64, begin: f64) {
         let mut slabs: Vec<Vec<u32>> = Vec::new();
         let mut slab_of = vec![NOWHERE; self.points.len()];
         for (triangle, corners) in (0u32..).zip(left.iter()) {
             let Some(corners) = corners else { continue };
-            let height = self.points[corners[0].vertex as usize][self.axis] / self.thickness + begin;
+            let height = self.points[corners[0].vertex as usize][self.axis] / thickness + begin;
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -60,9 +62,8 @@ impl Slabs<'_> {
         let coarsened: Vec<Coarsened> =
             slabs.par_iter().map(|slab| self.coarsened_slab(slab, left, marked, &slab_of)).collect();
         for (slab, found) in slabs.into_iter().zip(coarsened) {
-            for (triangle, corners) in slab.into_iter().zip(found.triangles) {
-                left[triangle as usize] = corners;
-            }
+            slab.into_iter().for_each(|triangle| left[triangle as usize] = None);
+            found.left.into_iter().for_each(|(triangle, corners)| left[triangle as usize] = Some(corners));
             for ((point, is_held), is_changed) in
                 found.points.into_iter().zip(found.is_held).zip(found.is_changed)
             {
@@ -93,21 +94,23 @@ impl Slabs<'_> {
         let positions: Vec<DVec3> = points.iter().map(|point| self.points[*point as usize]).collect();
         let limit = |(point, is_held): (&u32, &bool)| self.limits[*point as usize].filter(|_| !is_held);
         let limits: Vec<Option<f64>> = points.iter().zip(&is_held).map(limit).collect();
-        let sides: Vec<[Side; 2]> = slab.iter().map(|triangle| self.sides[*triangle as usize]).collect();
+        let sides_of = |triangle: &u32| self.sides[self.kind_of[*triangle as usize].index()];
+        let sides: Vec<[Side; 2]> = slab.iter().map(sides_of).collect();
         let mut is_changed: Vec<bool> = points.iter().map(|point| marked[*point as usize]).collect();
         let triangles = triangles.into_iter().map(Some).collect();
         let found = coarsened_around(self.domain, &positions, &limits, triangles, &sides, &mut is_changed);
         let global =
             |corner: PeriodicVertex| PeriodicVertex { vertex: points[corner.vertex as usize], ..corner };
-        let triangles = found.into_iter().map(|corners| corners.map(|corners| corners.map(global))).collect();
-        Coarsened { triangles, points, is_held, is_changed }
+        let left =
+            slab.iter().zip(found).filter_map(|(triangle, corners)| Some((*triangle, corners?.map(global))));
+        Coarsened { left: left.collect(), points, is_held, is_changed }
     }
 }
 
 /// What is left of a slab.
 struct Coarsened {
-    /// What is left of each of its triangles.
-    triangles: Vec<Corners>,
+    /// Its triangles that are left: few, and other slabs wait with theirs.
+    left: Vec<(u32, [PeriodicVertex; 3])>,
     /// The points that it had.
     points: Vec<u32>,
     /// Which of them stayed because they are near a border.

@@ -101,20 +101,21 @@ impl Untangling<'_> {
                     return is_moved;
                 }
                 let marked = self.marked(&folds, ring);
-                let old = points.to_vec();
-                points.par_iter_mut().enumerate().filter(|(point, _)| marked[*point]).for_each(
-                    |(point, place)| {
-                        let followed = match self.graph.followed(point) {
-                            [] => self.graph.beside(point),
-                            followed => followed,
-                        };
-                        let to = followed
-                            .iter()
-                            .map(|other| across(self.boxes.periods, *place, old[*other as usize]));
-                        let mean = to.sum::<DVec3>() / followed.len() as f64;
-                        *place = self.boxes.nearest(point, *place + 0.5 * mean);
-                    },
-                );
+                let smoothed = |point: usize| {
+                    let followed = match self.graph.followed(point) {
+                        [] => self.graph.beside(point),
+                        followed => followed,
+                    };
+                    let place = points[point];
+                    let to = followed
+                        .iter()
+                        .map(|other| across(self.boxes.periods, place, points[*other as usize]));
+                    let mean = to.sum::<DVec3>() / followed.len() as f64;
+                    (point, self.boxes.nearest(point, place + 0.5 * mean))
+                };
+                let moving = (0..points.len()).into_par_iter().filter(|point| marked[*point]);
+                let moved: Vec<(usize, DVec3)> = moving.map(smoothed).collect();
+                moved.into_iter().for_each(|(point, place)| points[point] = place);
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
             }
             let left = neighbors.folds(points).len();
