@@ -19,9 +19,12 @@ const ISLAND: Map = Map { shape: &[4, 4], labels: &[1, 1, 1, 1, 1, 0, 0, 1, 1, 0
 /// Found at random.
 const MIXED: Map = Map {
     shape: &[5, 4, 4],
-    labels: b"22121121111112211121222121111112122221122122112212212121121111221112111221122221",
+    labels: b"11212122112112222211111222111111212111212221221211211211111111121121212121212212",
 };
 const THIN: Map = Map { shape: &[5, 3, 3], labels: b"313111113131311112123333331312223222223123333" };
+
+/// Also found at random.
+const HELD: Map = Map { shape: &[4, 4, 3], labels: b"131123322221211123322222112323232222133312122133" };
 
 /// A kind of refusal, a map, the options that are refused, and those after the remedy.
 const REMEDIES: [(&str, Map, &str, &str); 9] = [
@@ -51,4 +54,12 @@ fn what_messages_about_maps_advise_helps() {
         assert_eq!(refusal(&said), Some(*kind), "{said}");
         workplace.run(&format!("smooth map.npy {mended} -o a.vtp"));
     }
+}
+
+/// Points where elements cross go toward a place at which grains have their volumes: toward one without, a grain whose points all went there never had its own.
+#[test]
+fn grains_whose_points_are_all_held_have_their_volumes() {
+    let workplace = Workplace::new();
+    workplace.put("map.npy", npy(HELD.shape, HELD.labels));
+    workplace.run("smooth map.npy --parts split --decimate 0 -o a.vtp");
 }

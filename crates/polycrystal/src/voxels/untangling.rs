@@ -70,21 +70,31 @@ impl Untangling<'_> {
         mut volume_error: f64,
         neighbors: &Neighbors<'_>,
     ) -> Untangled {
+        let mut home = None;
         for round in 0.. {
             let crossings = neighbors.crossings(&points);
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
                 let folds = neighbors.folds(&points);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
+            let home = home.get_or_insert_with(|| self.home());
             let marked = self.marked(&crossings, round / self.tuning.rounds_of_ring);
             for point in (0..points.len()).filter(|point| marked[*point]) {
                 is_held[point] = true;
-                let start = self.boxes.middle(point) + self.starts[point].as_dvec3();
-                points[point] = points[point].midpoint(start);
+                points[point] = points[point].midpoint(home[point]);
             }
             volume_error = self.search.restore(&mut points, self.boxes, &is_held);
         }
         unreachable!("rounds end")
+    }
+
+    /// Where points start, moved so that grains have their volumes. Without that, grains whose points are all held never got them.
+    fn home(&self) -> Vec<DVec3> {
+        let start = |(point, start): (usize, &Vec3)| self.boxes.middle(point) + start.as_dvec3();
+        let mut home: Vec<DVec3> = self.starts.iter().enumerate().map(start).collect();
+        let free = vec![false; home.len()];
+        self.search.restore(&mut home, self.boxes, &free);
+        home
     }
 
     /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
