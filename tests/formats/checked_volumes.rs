@@ -46,12 +46,7 @@ fn what_is_written_is_good() {
             assert_eq!(found.order, order);
             for ((grain, volume), wanted) in (0..).zip(&found.volumes).zip(polycrystal.network.cell_volumes())
             {
-                // Curved edges take from volumes or add to them.
-                let tolerance = if order == 2 { 0.05 } else { 1e-9 };
-                assert!(
-                    volume.0 == grain && (volume.1 / wanted - 1.0).abs() < tolerance,
-                    "{name}: {volume:?}"
-                );
+                assert!(volume.0 == grain && (volume.1 / wanted - 1.0).abs() < 1e-9, "{name}: {volume:?}");
             }
             assert!(found.volume_error.unwrap().abs() < 1e-9 && (BOX.element_product() - 3.0).abs() < 1e-12);
             let has_ties = periodic.any() && name != "a.bdf";
@@ -80,9 +75,7 @@ fn triangles_that_are_written_are_good() {
             assert_eq!((found.dimension, found.grains, found.elements), (2, 12, count), "{name}");
             assert_eq!(found.order, order);
             let areas = found.volumes.iter().zip(polycrystal.network.cell_volumes());
-            // Curved edges take from areas or add to them.
-            let tolerance = if order == 2 { 0.05 } else { 1e-9 };
-            areas.for_each(|((_, area), wanted)| assert!((area / wanted - 1.0).abs() < tolerance));
+            areas.for_each(|((_, area), wanted)| assert!((area / wanted - 1.0).abs() < 1e-9));
             assert!(found.volume_error.unwrap().abs() < 1e-9);
             let has_ties = periodic.any() && !name.ends_with("bdf");
             assert_eq!(found.tied_nodes > 0, has_ties, "{name}");

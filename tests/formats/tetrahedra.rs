@@ -293,6 +293,13 @@ fn gmsh_meshio_and_scikit_fem_read_tetrahedra() {
         let report = fs::read_to_string(folder.path().join("report.html")).unwrap();
         assert_eq!(report.matches("Share of tetrahedra in %").count(), 4);
         let mesh = polycrystal.volume_mesh.as_ref().unwrap();
+        if let Some(curved) = &polycrystal.curved {
+            let [smooth, flat] = [curved.corners(), &polycrystal.points]
+                .map(|points| points.iter().zip(&mesh.points).filter(|(point, is)| point == is).count());
+            assert!(smooth > mesh.surface_points * 9 / 10, "{smooth} of {}", mesh.surface_points);
+            // Those at corners of the box, and in the middle of its sides, do not move.
+            assert!(flat < mesh.surface_points * 2 / 3, "{flat} of {}", mesh.surface_points);
+        }
         let expected = serde_json::json!({
             "points": mesh.points.iter().map(|point| point.to_array()).collect::<Vec<_>>(),
             "surface_points": mesh.surface_points,

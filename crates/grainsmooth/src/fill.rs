@@ -84,8 +84,8 @@ impl Polycrystal {
         check_gmsh()?;
         let start = Instant::now();
         let mut mesh = self.filled_in_batches(TRIANGLES)?;
-        if let Some(middles) = self.middles.clone() {
-            mesh.curve(&self.network, middles);
+        if let Some(curved) = self.curved.clone() {
+            mesh.curve(&self.network, curved);
         }
         self.volume_mesh = Some(mesh);
         self.add_time(Stage::Filling, start.elapsed());

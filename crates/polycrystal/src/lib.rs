@@ -92,7 +92,7 @@ pub use relax::relax_tuned;
 pub use relax::{relax, relax_certified, relax_watched};
 #[doc(hidden)]
 pub use remesh::RemeshTuning;
-pub use remesh::{EdgeMiddles, ElementSize, MergedLine, PlaneMesh, Remeshed};
+pub use remesh::{CurvedBoundaries, ElementSize, MergedLine, PlaneMesh, Remeshed};
 pub use validate::validate;
 pub use voxels::{SmoothedVoxels, VoxelLabel, VoxelOptions, Voxels, smooth_voxels};
 #[doc(hidden)]

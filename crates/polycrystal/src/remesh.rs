@@ -5,10 +5,10 @@
 //! and the certificate is asked; where it finds a fault, elements become half as large, and all begins anew.
 
 mod assembled;
+mod curved;
 mod gradation;
 mod joints;
 mod lines;
-mod middles;
 mod outline;
 mod parts;
 mod patch;
@@ -32,9 +32,9 @@ use voronoi::{Dimension, Translation};
 use crate::mesh::id::id;
 use crate::{BoundaryId, Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
 use assembled::{Assembled, NewBoundary, assemble};
+pub use curved::CurvedBoundaries;
 use joints::separate_joints;
 use lines::{DividedLine, divide_lines};
-pub use middles::EdgeMiddles;
 use outline::{Numbering, Outlined, is_loop};
 use parts::Parts;
 pub use plane::PlaneMesh;
@@ -83,8 +83,8 @@ pub struct Remeshed {
     pub refinements: usize,
     /// Lines that became points, where that is asked for, the shortest first.
     pub merged: Vec<MergedLine>,
-    /// The middles of edges, where these are asked for. They lie on the smooth surface, and volumes are restored by [`EdgeMiddles::restore_volumes`].
-    pub middles: Option<EdgeMiddles>,
+    /// Points and middles of edges on the smooth surface, where middles are asked for; volumes are restored by [`CurvedBoundaries::restore_volumes`].
+    pub curved: Option<CurvedBoundaries>,
     /// In the plane, the triangles that fill the grains.
     pub triangles: Option<PlaneMesh>,
 }
@@ -186,16 +186,18 @@ impl Network {
             let sizes = SizeField::new(&around, size, halved, tuning);
             let lines = divide_lines(&around, &sizes);
             let numbering = Numbering::new(&around, &lines);
-            let assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
+            let mut assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
+            let curved =
+                size.has_middles.then(|| CurvedBoundaries::new(&assembled, &around, &lines, &numbering));
+            volumes::restore(&mut assembled);
             let (network, points) = (&assembled.network, assembled.points());
             let certificate = match validate(network, &points) {
                 Ok(certificate) => certificate,
                 Err(faults) => return Ok(Err(Faulty::of(faults, network, &points))),
             };
-            let middles = size.has_middles.then(|| EdgeMiddles::new(&assembled, &around, &lines, &numbering));
             let network = assembled.network;
             let merged = around.short.merged.clone();
-            Ok(Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles: None }))
+            Ok(Ok(Remeshed { network, points, certificate, refinements, merged, curved, triangles: None }))
         })
     }
 
@@ -281,7 +283,7 @@ fn halve_at(halved: &mut Vec<Halved>, place: DVec3, size: &ElementSize, tuning: 
     halved.push(Halved { place, within: tuning.halving_radius * was * size.length, factor: 0.5 * was });
 }
 
-/// One way from sizes to a network; nobody has looked for faults yet.
+/// One way from sizes to a network on the smooth surface; nobody has restored volumes or looked for faults yet.
 fn remesh(
     network: &Network,
     around: &Surroundings<'_>,
@@ -291,9 +293,7 @@ fn remesh(
 ) -> Result<Assembled, NetworkError> {
     let positions = positions_on_lines(around, lines, numbering);
     let new = shaped_parts(network, around, sizes, (lines, numbering, &positions), tuning);
-    let mut assembled = assemble(network, around, lines, numbering, positions, new)?;
-    volumes::restore(&mut assembled);
-    Ok(assembled)
+    assemble(network, around, lines, numbering, positions, new)
 }
 
 /// The triangles of all parts that are no copies, between lines whose points are where they are.

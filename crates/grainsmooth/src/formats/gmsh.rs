@@ -54,7 +54,7 @@ fn stage(polycrystal: &Polycrystal, output: &OutputPath<()>, files: &mut StagedF
     if polycrystal.writes_elements() {
         output.stage(files, |out| match polycrystal.dimension() {
             Dimension::Two => plane::write(polycrystal, out),
-            Dimension::Three => volumes::write(&polycrystal.surface()?, polycrystal, out),
+            Dimension::Three => volumes::write(polycrystal, out),
         })?;
         // What an earlier run left would fill grains that are filled.
         if script.target().exists() {

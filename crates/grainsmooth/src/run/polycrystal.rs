@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Attempt, BoxCut, Certificate, EdgeMiddles, HerringResidual, Measures, Network, NetworkError, Side,
+    Attempt, BoxCut, Certificate, CurvedBoundaries, HerringResidual, Measures, Network, NetworkError, Side,
     herring_residual, measure_network, validate,
 };
 use voronoi::Dimension;
@@ -45,8 +45,8 @@ pub struct Polycrystal {
     pub moved_for_cut: DVec3,
     /// What became of a wish for elements of a size.
     pub elements: Option<ElementsReached>,
-    /// The middles of the triangles' edges, where elements of second order are asked for.
-    pub middles: Option<EdgeMiddles>,
+    /// Boundaries with curved edges, where elements of second order are asked for.
+    pub curved: Option<CurvedBoundaries>,
     /// Tetrahedra that fill the grains, where these were filled.
     pub volume_mesh: Option<VolumeMesh>,
     /// In the plane, triangles that fill the grains, where elements have a size.
@@ -76,7 +76,7 @@ impl Polycrystal {
             validation,
             moved_for_cut: DVec3::ZERO,
             elements: None,
-            middles: None,
+            curved: None,
             volume_mesh: None,
             plane_mesh: None,
             times: Vec::new(),

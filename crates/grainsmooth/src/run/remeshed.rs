@@ -68,10 +68,10 @@ impl Polycrystal {
         let size = ElementSize { length, growth, of_radius, has_middles, merges_short_lines };
         let cut = self.axes_cut_at_box();
         match self.network.remeshed(&self.points, &size, cut) {
-            Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles }) => {
+            Ok(Remeshed { network, points, certificate, refinements, merged, curved, triangles }) => {
                 let mean_edge = network.mean_edge_length(&points);
-                self.plane_mesh = match (triangles, &middles) {
-                    (Some(mesh), Some(middles)) => Some(FilledPlane::curved(mesh, &network, middles.clone())),
+                self.plane_mesh = match (triangles, &curved) {
+                    (Some(mesh), Some(curved)) => Some(FilledPlane::curved(mesh, &network, curved.clone())),
                     (Some(mesh), None) => Some(FilledPlane { mesh, curved: None }),
                     (None, _) => None,
                 };
@@ -81,7 +81,7 @@ impl Polycrystal {
                 // Angles stay those of the smooth boundaries, as they were before they were stretched.
                 self.validation.triangles = certificate.triangles;
                 self.validation.largest_volume_error = certificate.largest_volume_error;
-                (self.network, self.points, self.middles) = (network, points, middles);
+                (self.network, self.points, self.curved) = (network, points, curved);
             }
             Err(error) => return Err(self.failure(error)),
         }

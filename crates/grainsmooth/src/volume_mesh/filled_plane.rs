@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use glam::DVec3;
-use polycrystal::{EdgeMiddles, Mesh, Network, PlaneMesh};
+use polycrystal::{CurvedBoundaries, Mesh, Network, PlaneMesh};
 use serde::Serialize;
 use subzero::EdgeId;
 
 use super::CurvedEdges;
-use super::curved::LEAST;
+use super::curved::{LEAST, least_and_mean};
 use super::element_nodes::sorted;
 
 /// Triangles that fill grains in the plane.
@@ -43,42 +43,52 @@ pub struct PlaneQuality {
 const NARROW: f64 = 25.0;
 
 impl FilledPlane {
-    /// Bends edges on boundaries to the given middles, so that grains keep their areas. The edges of elements that would come near to turning inside out stay straight.
-    pub(crate) fn curved(mut mesh: PlaneMesh, network: &Network, mut middles: EdgeMiddles) -> Self {
+    /// Moves points and edges of boundaries onto the smooth lines, so that grains keep their areas. Those of elements that would come near to turning inside out stay where they are, with
+    /// straight edges.
+    pub(crate) fn curved(mut mesh: PlaneMesh, network: &Network, mut boundaries: CurvedBoundaries) -> Self {
         let level = network.finest_level();
         let Mesh::Segments(lines) = &level.mesh else { return Self { mesh, curved: None } };
         let edges: BTreeMap<[u32; 2], EdgeId> =
             (0u32..).zip(lines.segments()).map(|(edge, ends)| (sorted(*ends), EdgeId(edge))).collect();
-        let points = &mesh.points[..mesh.line_points];
+        let points = mesh.points[..mesh.line_points].to_vec();
+        let straight_areas: Vec<f64> =
+            (0..mesh.triangles.len()).map(|triangle| doubled_area(mesh.corners(triangle))).collect();
         let curved = loop {
-            let largest_volume_error = middles.restore_volumes(network, points);
+            let largest_volume_error = boundaries.restore_volumes(network);
+            mesh.points[..points.len()].copy_from_slice(boundaries.corners());
             let mut least_jacobian = 1.0f64;
-            let mut bent = BTreeSet::new();
-            for corners in &mesh.triangles {
-                let ends = [0, 1, 2].map(|k| sorted([corners[k], corners[(k + 1) % 3]]));
-                let on_boundary = ends.map(|ends| edges.get(&ends).copied());
-                if on_boundary.iter().all(Option::is_none) {
+            let (mut moved, mut bent) = (BTreeSet::new(), BTreeSet::new());
+            for (corners, straight_area) in mesh.triangles.iter().zip(&straight_areas) {
+                let at_boundaries = corners.iter().filter(|corner| (**corner as usize) < points.len());
+                if at_boundaries.clone().next().is_none() {
                     continue;
                 }
+                let ends = [0, 1, 2].map(|k| sorted([corners[k], corners[(k + 1) % 3]]));
+                let on_boundary = ends.map(|ends| edges.get(&ends).copied());
                 let places = corners.map(|corner| mesh.points[corner as usize]);
                 let at_middles = array::from_fn(|k| match on_boundary[k] {
-                    Some(edge) => middles.points()[edge.index()],
+                    Some(edge) => boundaries.middles()[edge.index()],
                     None => places[k].midpoint(places[(k + 1) % 3]),
                 });
-                let share = least_jacobian_share(places, at_middles);
+                let (share, _) = jacobian_shares(places, at_middles);
                 least_jacobian = least_jacobian.min(share);
-                if share < LEAST {
-                    bent.extend(on_boundary.into_iter().flatten().filter(|edge| !middles.is_straight(*edge)));
+                if share.min(doubled_area(places) / straight_area) < LEAST {
+                    let is_moved =
+                        |corner: &u32| boundaries.corners()[*corner as usize] != points[*corner as usize];
+                    moved.extend(at_boundaries.copied().filter(is_moved));
+                    let own = on_boundary.into_iter().flatten();
+                    bent.extend(own.filter(|edge| !boundaries.is_straight(*edge)));
                 }
             }
-            if bent.is_empty() {
-                let straight = edges.values().filter(|edge| middles.is_straight(**edge)).count();
+            if moved.is_empty() && bent.is_empty() {
+                let straight = edges.values().filter(|edge| boundaries.is_straight(**edge)).count();
                 let curved = edges.len() - straight;
                 break CurvedEdges { curved, straight, least_jacobian, largest_volume_error };
             }
-            middles.straighten(network, points, bent.into_iter());
+            boundaries.straighten(network, &points, moved.into_iter(), bent.into_iter());
         };
-        mesh.middles = edges.into_iter().map(|(ends, edge)| (ends, middles.points()[edge.index()])).collect();
+        let middles = boundaries.middles();
+        mesh.middles = edges.into_iter().map(|(ends, edge)| (ends, middles[edge.index()])).collect();
         Self { mesh, curved: Some(curved) }
     }
 
@@ -108,9 +118,10 @@ fn angle_and_shape([a, b, c]: [DVec3; 3]) -> (f64, f64) {
     (angles.into_iter().fold(f64::INFINITY, f64::min).to_degrees(), shape)
 }
 
-/// A lower bound of the Jacobian determinant of a triangle of second order, as a share of what it is with straight edges: the least of the Bernstein coefficients of that quadratic polynomial.
+/// A lower bound of the Jacobian determinant of a triangle of second order, and its mean, which is that of the area, as shares of what they are with straight edges: the least of the Bernstein
+/// coefficients of that quadratic polynomial, and their mean.
 /// Middles are those of the edges 0 1, 1 2, 2 0.
-pub(crate) fn least_jacobian_share(corners: [DVec3; 3], middles: [DVec3; 3]) -> f64 {
+pub(crate) fn jacobian_shares(corners: [DVec3; 3], middles: [DVec3; 3]) -> (f64, f64) {
     let middle = |a: usize, b: usize| match (a.min(b), a.max(b)) {
         (0, 1) => middles[0],
         (1, 2) => middles[1],
@@ -124,10 +135,13 @@ pub(crate) fn least_jacobian_share(corners: [DVec3; 3], middles: [DVec3; 3]) -> 
     let columns = [0, 1, 2].map(|at| [1, 2].map(|by| derivative(by, at) - derivative(0, at)));
     let determinant = |i: usize, j: usize| columns[i][0].cross(columns[j][1]).z;
     let coefficient = |(i, j): (usize, usize)| 0.5 * (determinant(i, j) + determinant(j, i));
-    let [a, b, c] = corners;
-    let straight = (b - a).cross(c - a).z;
+    let straight = doubled_area(corners);
     let all = (0..3).flat_map(|i| (i..3).map(move |j| (i, j)));
-    all.map(|at| coefficient(at) / straight).fold(f64::INFINITY, f64::min)
+    least_and_mean(all.map(|at| coefficient(at) / straight))
+}
+
+fn doubled_area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).z
 }
 
 impl fmt::Display for PlaneQuality {
@@ -149,13 +163,15 @@ mod tests {
     #[test]
     fn the_jacobian_is_one_with_straight_edges_and_vanishes_with_a_middle_at_a_quarter() {
         let mut middles = [0, 1, 2].map(|k| CORNERS[k].midpoint(CORNERS[(k + 1) % 3]));
-        assert!((least_jacobian_share(CORNERS, middles) - 1.0).abs() < 1e-15);
+        let (least, mean) = jacobian_shares(CORNERS, middles);
+        assert!((least - 1.0).abs() < 1e-15 && (mean - 1.0).abs() < 1e-15);
         // x = s + 4 s (1 - s) (m - 1/2) along the edge: dx/ds = 4 m - 1 at its start.
         middles[0].x = 0.25;
-        assert!(least_jacobian_share(CORNERS, middles).abs() < 1e-15);
-        // A bulge out of the triangle grows it; at the corners beside it, one into it takes 4 times its height.
+        assert!(jacobian_shares(CORNERS, middles).0.abs() < 1e-15);
+        // At the corners beside it, a bulge into the triangle takes 4 times its height; of its area, two thirds of the bulge's length times its height.
         middles[0] = DVec3::new(0.5, 0.1, 0.0);
-        assert!((least_jacobian_share(CORNERS, middles) - 0.6).abs() < 1e-12);
+        let (least, mean) = jacobian_shares(CORNERS, middles);
+        assert!((least - 0.6).abs() < 1e-12 && (mean - (1.0 - 2.0 * 0.1 * 2.0 / 3.0)).abs() < 1e-12);
     }
 
     #[test]

@@ -87,13 +87,13 @@ pub(super) fn remeshed(
         let positions = positions_on_lines(&around, &divided, &numbering);
         let shaped = shaped_parts(network, &around, &sizes, (&divided, &numbering, &positions), tuning);
         let mut new = assemble(network, lines, &around, (&divided, &numbering), positions, shaped)?;
+        let curved = size.has_middles.then(|| new.curved(&around, &divided, &numbering));
         volumes::restore(&mut new.assembled);
         let points = new.assembled.points();
         let certificate = match validate(&new.assembled.network, &points) {
             Ok(certificate) => certificate,
             Err(faults) => return Ok(Err(Faulty::of(faults, &new.assembled.network, &points))),
         };
-        let middles = size.has_middles.then(|| new.middles(&around, &divided, &numbering));
         let network = new.assembled.network;
         let mesh = PlaneMesh {
             line_points: points.len(),
@@ -112,7 +112,7 @@ pub(super) fn remeshed(
         }
         let triangles = Some(mesh);
         let merged = around.short.merged.clone();
-        Ok(Ok(Remeshed { network, points, certificate, refinements, merged, middles, triangles }))
+        Ok(Ok(Remeshed { network, points, certificate, refinements, merged, curved, triangles }))
     })
 }
 

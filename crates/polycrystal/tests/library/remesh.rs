@@ -243,47 +243,59 @@ fn walls_without_copies_are_named() {
 }
 
 #[test]
-fn middles_of_edges_lie_on_the_smooth_surface_and_keep_volumes() {
+fn curved_boundaries_lie_on_the_smooth_surface_and_keep_volumes() {
     let periods = [BVec3::FALSE, BVec3::new(true, true, false)];
     for domain in periods.map(|periods| Domain::unit_cube().with_periods(periods)) {
         let (network, flat) = regular_network(&domain, 15, 3, 2);
         let points = relaxed(&network, &flat);
         let size = ElementSize { has_middles: true, ..size(&network, 4.0) };
         let remeshed = network.remeshed(&points, &size, BVec3::FALSE).expect("remeshed");
-        let (new, new_points) = (&remeshed.network, &remeshed.points);
+        let (new, new_points) = (&remeshed.network, remeshed.points.as_slice());
         let Mesh::Triangles(mesh) = &new.finest().held().mesh else { panic!("a network in space") };
-        let straight: Vec<DVec3> = mesh
-            .edges()
-            .map(|[from, to]| new_points[from as usize].midpoint(new_points[to as usize]))
-            .collect();
-
-        let mut middles = remeshed.middles.clone().expect("middles");
+        let mut curved = remeshed.curved.clone().expect("curved boundaries");
+        let straight = |corners: &[DVec3]| -> Vec<DVec3> {
+            mesh.edges()
+                .map(|ends| ends.map(|end| corners[end as usize]))
+                .map(|[a, b]| a.midpoint(b))
+                .collect()
+        };
         let largest_error = |volumes: &[f64]| {
             let relative = volumes.iter().zip(new.cell_volumes()).map(|(is, cell)| (is / cell - 1.0).abs());
             relative.fold(0.0, f64::max)
         };
         // Before any motion quadratic triangles err by a fraction of what straight ones do before theirs.
-        let before = largest_error(&middles.grain_volumes(new, new_points));
+        let before = largest_error(&curved.grain_volumes(new));
         assert!((1e-9..5e-3).contains(&before), "{before}");
-        assert!(middles.restore_volumes(new, new_points) < 1e-12);
-        assert!(largest_error(&middles.grain_volumes(new, new_points)) < 1e-12);
-        let rms = |middles: &[DVec3]| {
-            let squares = middles
-                .iter()
-                .step_by(middles.len().div_ceil(200))
-                .map(|middle| distance(*middle, triangles(&network), &points).powi(2));
-            (squares.sum::<f64>() / 200.0).sqrt() / size.length
+        assert!(curved.restore_volumes(new) < 1e-12);
+        assert!(largest_error(&curved.grain_volumes(new)) < 1e-12);
+        let rms = |places: &[DVec3]| {
+            let some = places.iter().step_by(places.len().div_ceil(200));
+            let squares = some.clone().map(|place| distance(*place, triangles(&network), &points).powi(2));
+            (squares.sum::<f64>() / some.count() as f64).sqrt() / size.length
         };
-        let [curved, chords] = [rms(middles.points()), rms(&straight)];
-        assert!(curved < 0.3 * chords, "{curved} of {chords} from the smooth surface");
+        let chords = rms(&straight(curved.corners()));
+        for places in [curved.corners(), curved.middles()] {
+            assert!(rms(places) < 0.05 * chords, "{} of {chords} from the smooth surface", rms(places));
+        }
+        assert!(rms(new_points) > 0.2 * chords, "corners of flat triangles keep volumes beside it");
 
         // Straight where it is asked for, there and at copies, and grains still have their volumes.
         let asked: Vec<EdgeId> = (0u32..).take(mesh.edge_count()).step_by(7).map(EdgeId).collect();
-        middles.straighten(new, new_points, asked.iter().copied());
-        assert!(middles.restore_volumes(new, new_points) < 1e-12);
+        let corners: Vec<u32> = (0u32..).take(new_points.len()).step_by(5).collect();
+        curved.straighten(new, new_points, corners.iter().copied(), asked.iter().copied());
+        assert!(curved.restore_volumes(new) < 1e-12);
+        for corner in corners {
+            assert_eq!(curved.corners()[corner as usize], new_points[corner as usize]);
+        }
+        let straight = straight(curved.corners());
         for edge in asked {
-            assert!(middles.is_straight(edge));
-            assert!(middles.points()[edge.index()].distance(straight[edge.index()]) < 1e-15);
+            assert!(curved.is_straight(edge));
+            assert!(curved.middles()[edge.index()].distance(straight[edge.index()]) < 1e-15);
+        }
+        for pair in &new.finest().held().copies.vertices {
+            let [copy, original] =
+                [pair.secondary, pair.primary].map(|corner| curved.corners()[corner as usize]);
+            assert_eq!(copy, original + pair.translation.vector(&domain));
         }
         // What is on a wall stays there.
         let level = new.finest();
@@ -295,7 +307,7 @@ fn middles_of_edges_lie_on_the_smooth_surface_and_keep_volumes() {
             let axis =
                 (0..3).find(|axis| a[*axis] == b[*axis] && b[*axis] == c[*axis]).expect("walls of a box");
             for edge in mesh.triangle_edges(FaceId(triangle)) {
-                assert_eq!(middles.points()[edge.index()][axis], a[axis]);
+                assert_eq!(curved.middles()[edge.index()][axis], a[axis]);
             }
         }
     }

@@ -172,3 +172,47 @@ fn short_lines_become_points_where_four_grains_meet() {
         assert!(count(&remeshed) < count(&kept));
     }
 }
+
+/// The root mean square of distances from the segments of a network, and the largest distance.
+fn distances(network: &Network, points: &[DVec3], places: &[DVec3]) -> (f64, f64) {
+    let level = network.finest_level();
+    let Elements::Segments(segments) = Elements::from(&level.mesh) else { panic!("lines in the plane") };
+    let distance = |place: &DVec3| {
+        let to_segment = |ends: &[u32; 2]| {
+            let [from, to] = ends.map(|end| points[end as usize]);
+            let share = ((place - from).dot(to - from) / from.distance_squared(to)).clamp(0.0, 1.0);
+            from.lerp(to, share).distance(*place)
+        };
+        segments.iter().map(to_segment).fold(f64::INFINITY, f64::min)
+    };
+    let squares: Vec<f64> = places.iter().map(|place| distance(place).powi(2)).collect();
+    let largest = squares.iter().fold(0.0f64, |largest, square| largest.max(*square));
+    ((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), largest.sqrt())
+}
+
+#[test]
+fn curved_lines_lie_on_the_smooth_ones_and_keep_areas() {
+    for periods in [BVec3::FALSE, BVec3::new(true, true, false)] {
+        let domain = Domain::unit_square().with_periods(periods);
+        let (network, points) = grains(&domain, 3, &Relaxation::Equilibrium);
+        let size = ElementSize { has_middles: true, ..size(&network, 5.0) };
+        let remeshed = network.remeshed(&points, &size, BVec3::FALSE).expect("remeshed");
+        let new = &remeshed.network;
+        let mut curved = remeshed.curved.expect("curved boundaries");
+        assert!(curved.restore_volumes(new) < 1e-12);
+        let level = new.finest_level();
+        let Elements::Segments(segments) = Elements::from(&level.mesh) else { panic!("lines in the plane") };
+        let chords: Vec<DVec3> = segments
+            .iter()
+            .map(|ends| ends.map(|end| curved.corners()[end as usize]))
+            .map(|[from, to]| from.midpoint(to))
+            .collect();
+        let (chords, _) = distances(&network, &points, &chords);
+        let (corners, _) = distances(&network, &points, curved.corners());
+        let (middles, largest) = distances(&network, &points, curved.middles());
+        assert!(corners < 0.05 * chords, "{corners} of {chords}");
+        assert!(middles < 0.05 * chords && largest < 0.01 * size.length, "{middles} {largest} of {chords}");
+        let (beside, _) = distances(&network, &points, &remeshed.points);
+        assert!(beside > 0.2 * chords, "corners of straight edges keep areas beside the smooth lines");
+    }
+}

@@ -30,14 +30,12 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).z / 2.0
 }
 
-/// A lower bound of the Jacobian determinant of an element of second order, as a share of what it is with straight edges.
-fn least_jacobian(corners: &[DVec3], middles: &[DVec3]) -> f64 {
+/// A lower bound of the Jacobian determinant of an element of second order, and its mean, as shares of what they are with straight edges.
+fn jacobian_shares(corners: &[DVec3], middles: &[DVec3]) -> (f64, f64) {
     match (corners, middles) {
-        (&[a, b, c, d], &[e, f, g, h, i, j]) => {
-            curved::least_jacobian_share([a, b, c, d], [e, f, g, h, i, j])
-        }
-        (&[a, b, c], &[d, e, f]) => filled_plane::least_jacobian_share([a, b, c], [d, e, f]),
-        _ => 1.0,
+        (&[a, b, c, d], &[e, f, g, h, i, j]) => curved::jacobian_shares([a, b, c, d], [e, f, g, h, i, j]),
+        (&[a, b, c], &[d, e, f]) => filled_plane::jacobian_shares([a, b, c], [d, e, f]),
+        _ => (1.0, 1.0),
     }
 }
 
@@ -61,7 +59,7 @@ pub(super) fn check(file: &VolumeFile, found: &mut Found) {
             let what = if file.shape == ElementShape::Triangle { "area" } else { "volume" };
             report("inverted", format!("{one} {number} has the {what} {volume:.3e}"));
         } else if let Some(middles) = middles {
-            let share = least_jacobian(&corners, &file.places(middles));
+            let (share, _) = jacobian_shares(&corners, &file.places(middles));
             if share <= 0.0 {
                 let message = format!(
                     "the Jacobian determinant of {one} {number} may be {share:.3} of what it is with straight edges"
@@ -102,14 +100,17 @@ fn check_middles(file: &VolumeFile, found: &mut Found) {
 /// Volumes of all grains, compared with what the file says. An element is one of its first grain.
 pub(super) fn check_volumes(file: &VolumeFile, found: &mut Found) -> Vec<(u32, f64)> {
     let mut volumes: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut middles = file.middles();
     for (corners, grains) in file.elements().zip(&file.grains) {
+        let corners = file.places(corners);
+        let middles = middles.next().map(|middles| file.places(middles)).unwrap_or_default();
         if let Some(grain) = grains.first() {
-            *volumes.entry(grain.0).or_default() += shape_and_volume(&file.places(corners)).1;
+            let (_, share) = jacobian_shares(&corners, &middles);
+            *volumes.entry(grain.0).or_default() += share * shape_and_volume(&corners).1;
         }
     }
     let stated = file.volumes.iter().filter(|stated| stated.len() == volumes.len()).flatten();
-    // With straight edges alone: what bends adds to volumes.
-    for ((grain, volume), stated) in volumes.iter().zip(stated).filter(|_| !file.is_quadratic()) {
+    for ((grain, volume), stated) in volumes.iter().zip(stated) {
         if (volume / stated - 1.0).abs() > VOLUME_TOLERANCE {
             let message = format!("grain {grain} has the volume {volume}, and should have {stated}");
             found.push("wrong volume", message, None).grains = vec![*grain];

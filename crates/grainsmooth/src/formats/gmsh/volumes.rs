@@ -2,6 +2,7 @@
 //!
 //! Solvers such as FEniCSx read only elements in physical groups, each in one; so points and curves have no elements, and a boundary at a side of the box is in the group of that side.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use super::super::lines::Junctions;
@@ -19,8 +20,12 @@ use crate::volume_mesh::element_nodes::ElementNodes;
 const LINEAR: [u32; 2] = [2, 4];
 const QUADRATIC: [u32; 2] = [9, 11];
 
-pub(super) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let (elements, pairs) = polycrystal.elements()?;
+    let mut surface = polycrystal.surface()?;
+    // Those of elements of second order lie elsewhere than the network's.
+    surface.points = Cow::Borrowed(&elements.points[..elements.boundary_points]);
+    let surface = &surface;
     let junctions = Junctions::of(surface);
     let groups = Groups::of(polycrystal);
     let grain_count = polycrystal.network.grain_count();

@@ -10,8 +10,8 @@ use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
 use crate::remesh::assembled::{Assembled, NewBoundary};
+use crate::remesh::curved::{CurvedBoundaries, LineMiddle};
 use crate::remesh::lines::DividedLine;
-use crate::remesh::middles::{EdgeMiddles, LineMiddle};
 use crate::remesh::outline::Numbering;
 use crate::remesh::short_lines::meetings_at;
 use crate::remesh::size_field::Surroundings;
@@ -159,13 +159,13 @@ fn pieces(smooth: &Level, around: &Surroundings<'_>) -> Vec<Piece> {
 }
 
 impl AssembledPlane {
-    /// The middles of all segments along the smooth lines.
-    pub(super) fn middles(
+    /// The points, as long as they are on the smooth lines, and the middles of all segments along these.
+    pub(super) fn curved(
         &self,
         around: &Surroundings<'_>,
         lines: &[DividedLine],
         numbering: &Numbering,
-    ) -> EdgeMiddles {
+    ) -> CurvedBoundaries {
         let domain = self.assembled.network.domain();
         let mut middles = Vec::new();
         for piece in &self.pieces {
@@ -182,7 +182,7 @@ impl AssembledPlane {
                 middles[first..].reverse();
             }
         }
-        EdgeMiddles::of_lines(&self.assembled.network, middles)
+        CurvedBoundaries::of_lines(&self.assembled, middles)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Points in the middle of edges, for elements of second order: on the smooth surface, and such that grains keep their volumes.
+//! Boundaries for elements of second order: corners and middles of edges on the smooth surface, and such that grains keep their volumes.
 
 use std::collections::BTreeMap;
 
@@ -22,11 +22,17 @@ use crate::remesh::volumes::{hold_on_walls, restore_by};
 use crate::solver::least_motion::MovingPoint;
 use crate::{Boundary, BoundaryId, Mesh, Network, WallSet};
 
-/// A point in the middle of each edge of a remeshed network: with it edges are parabolas, and triangles parts of quadratic surfaces.
+/// The points of a remeshed network on the smooth surface, and one in the middle of each edge: with it edges are parabolas, and triangles parts of quadratic surfaces.
+///
+/// Flat triangles have their corners beside the smooth surface, half as far from it as their edges on the mean, for grains to keep their volumes. Curved ones need not.
 #[derive(Debug, Clone, PartialEq)]
-pub struct EdgeMiddles {
+pub struct CurvedBoundaries {
+    /// One for each point of the network.
+    corners: Vec<DVec3>,
+    /// The point that each corner is a copy of.
+    original_corners: Vec<u32>,
     /// One for each edge of the finest level's mesh, by its number, in the unit of the domain; in the plane one for each segment.
-    points: Vec<DVec3>,
+    middles: Vec<DVec3>,
     /// The edge that each is a copy of, and the periods from there; itself where it is none.
     originals: Vec<Moved<u32>>,
     walls: Vec<WallSet>,
@@ -41,21 +47,24 @@ pub(crate) struct LineMiddle {
     pub(crate) walls: WallSet,
 }
 
-impl EdgeMiddles {
-    /// The middles of all segments of a network in the plane, in their order.
-    pub(crate) fn of_lines(network: &Network, middles: Vec<LineMiddle>) -> Self {
+impl CurvedBoundaries {
+    /// A network in the plane, whose points are on the smooth lines, with the middles of all segments in their order.
+    pub(crate) fn of_lines(assembled: &Assembled, middles: Vec<LineMiddle>) -> Self {
         let ends: Vec<[Moved<u32>; 2]> = middles.iter().map(|middle| middle.ends).collect();
         let mut of_lines = Self {
+            corners: assembled.points(),
+            original_corners: assembled.originals.iter().map(|moved| moved.original).collect(),
             originals: originals(ends.into_iter()),
-            points: middles.iter().map(|middle| middle.place).collect(),
+            middles: middles.iter().map(|middle| middle.place).collect(),
             walls: middles.iter().map(|middle| middle.walls).collect(),
             is_straight: vec![false; middles.len()],
         };
-        of_lines.put_on_walls(network);
+        of_lines.put_on_walls(&assembled.network);
         of_lines
     }
 
-    /// The middles of lines along the smooth lines; within boundaries the points of the smooth surface that are nearest to the middles of straight edges.
+    /// A network whose points are on the smooth surface, with the middles of lines along the smooth lines; within boundaries these are the points of the smooth surface that are nearest to
+    /// the middles of straight edges.
     pub(crate) fn new(
         assembled: &Assembled,
         around: &Surroundings<'_>,
@@ -66,7 +75,7 @@ impl EdgeMiddles {
         let (domain, sets, boundaries) = (network.domain(), network.wall_sets(), network.boundaries());
         let level = network.finest_level();
         let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("triangles were assembled") };
-        let points = assembled.points();
+        let corners = assembled.points();
 
         let mut on_lines: BTreeMap<[Moved<u32>; 2], (DVec3, WallSet)> = BTreeMap::new();
         for occurrence in &around.skeleton.occurrences {
@@ -87,7 +96,7 @@ impl EdgeMiddles {
             edges.iter().for_each(|edge| boundary_of_edges[edge.index()] = boundary.index());
         }
         let place = |(ends, boundary): ([u32; 2], usize)| {
-            let middle = points[ends[0] as usize].midpoint(points[ends[1] as usize]);
+            let middle = corners[ends[0] as usize].midpoint(corners[ends[1] as usize]);
             if let Some(found) = on_lines.get(&sorted(ends.map(|end| assembled.originals[end as usize]))) {
                 return *found;
             }
@@ -97,16 +106,22 @@ impl EdgeMiddles {
             }
         };
         let edges: Vec<([u32; 2], usize)> = mesh.edges().zip(boundary_of_edges).collect();
-        let (points, walls) = edges.into_par_iter().map(place).unzip();
+        let (middles, walls) = edges.into_par_iter().map(place).unzip();
         let is_straight = vec![false; mesh.edge_count()];
-        let mut middles = Self { points, originals, walls, is_straight };
-        middles.put_on_walls(network);
-        middles
+        let original_corners = assembled.originals.iter().map(|moved| moved.original).collect();
+        let mut curved = Self { corners, original_corners, middles, originals, walls, is_straight };
+        curved.put_on_walls(network);
+        curved
     }
 
-    /// The middle of each edge of the finest level's mesh, by its number.
-    pub fn points(&self) -> &[DVec3] {
-        &self.points
+    /// The points of the network.
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
+    }
+
+    /// The middle of each edge of the finest level's mesh, by its number; in the plane of each segment.
+    pub fn middles(&self) -> &[DVec3] {
+        &self.middles
     }
 
     /// Whether an edge was made straight.
@@ -114,21 +129,33 @@ impl EdgeMiddles {
         self.is_straight[self.originals[edge.index()].original as usize]
     }
 
-    /// Makes some edges straight, and all that are the same a period away, between the points of the network.
+    /// Puts some corners where the network has its points, and makes some edges straight, at all that are the same a period away too.
     ///
     /// # Panics
     /// When there are no such edges or points.
-    pub fn straighten(&mut self, network: &Network, points: &[DVec3], edges: impl Iterator<Item = EdgeId>) {
+    pub fn straighten(
+        &mut self,
+        network: &Network,
+        points: &[DVec3],
+        corners: impl Iterator<Item = u32>,
+        edges: impl Iterator<Item = EdgeId>,
+    ) {
+        let mut is_put_back = vec![false; self.corners.len()];
+        corners.for_each(|corner| is_put_back[self.original_corners[corner as usize] as usize] = true);
+        for (corner, original) in self.original_corners.iter().enumerate() {
+            if is_put_back[*original as usize] {
+                self.corners[corner] = points[corner];
+            }
+        }
+        edges.for_each(|edge| self.is_straight[self.originals[edge.index()].original as usize] = true);
         let level = network.finest_level();
-        let ends = |edge: u32| match &level.mesh {
-            Mesh::Triangles(mesh) => mesh.edge(EdgeId(edge)),
-            Mesh::Segments(mesh) => mesh.segments()[edge as usize],
-        };
-        for edge in edges {
-            let original = self.originals[edge.index()].original;
-            self.is_straight[original as usize] = true;
-            let [from, to] = ends(original).map(|end| points[end as usize]);
-            self.points[original as usize] = from.midpoint(to);
+        for edge in (0..self.middles.len()).filter(|edge| self.is_straight[*edge]) {
+            let ends = match &level.mesh {
+                Mesh::Triangles(mesh) => mesh.edge(EdgeId(id(edge))),
+                Mesh::Segments(mesh) => mesh.segments()[edge],
+            };
+            let [from, to] = ends.map(|end| self.corners[end as usize]);
+            self.middles[edge] = from.midpoint(to);
         }
         self.put_on_walls(network);
     }
@@ -138,17 +165,17 @@ impl EdgeMiddles {
     /// Returns the largest error of a grain, as a share of its volume.
     ///
     /// # Panics
-    /// When the network or its points are others than those that the middles were made for.
-    pub fn restore_volumes(&mut self, network: &Network, points: &[DVec3]) -> f64 {
-        let move_by = |middles: &mut Self, motions: Vec<DVec3>| {
-            middles.points.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
-            middles.put_on_walls(network);
+    /// When the network is another than the one that they were made for.
+    pub fn restore_volumes(&mut self, network: &Network) -> f64 {
+        let move_by = |curved: &mut Self, motions: Vec<DVec3>| {
+            curved.middles.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+            curved.put_on_walls(network);
         };
         restore_by(
             self,
             (network.cell_volumes(), network.fills_domain()),
-            |middles| middles.grain_volumes(network, points),
-            |middles| middles.moving_points(network, points),
+            |curved| curved.grain_volumes(network),
+            |curved| curved.moving_points(network),
             move_by,
         )
     }
@@ -156,12 +183,12 @@ impl EdgeMiddles {
     /// The volume of each grain within quadratic triangles.
     ///
     /// # Panics
-    /// When the network or its points are others than those that the middles were made for.
-    pub fn grain_volumes(&self, network: &Network, points: &[DVec3]) -> Vec<f64> {
+    /// When the network is another than the one that they were made for.
+    pub fn grain_volumes(&self, network: &Network) -> Vec<f64> {
         let level = network.finest_level();
         let mesh = match &level.mesh {
             Mesh::Triangles(mesh) => mesh,
-            Mesh::Segments(mesh) => return self.grain_areas(network, mesh.segments(), points),
+            Mesh::Segments(mesh) => return self.grain_areas(network, mesh.segments()),
         };
         let boundary_count = network.boundaries().len();
         let triangles = triangles_of_boundaries(boundary_count, &level.boundary_of);
@@ -169,10 +196,10 @@ impl EdgeMiddles {
             let triangles = triangles.of(boundary);
             let apex = triangles
                 .first()
-                .map_or(DVec3::ZERO, |first| points[mesh.triangles()[*first as usize][0] as usize]);
+                .map_or(DVec3::ZERO, |first| self.corners[mesh.triangles()[*first as usize][0] as usize]);
             let (mut volume, mut area) = (0.0, DVec3::ZERO);
             for triangle in triangles {
-                for (_, place, normal) in self.quadratic(mesh, points, *triangle).at_abscissas() {
+                for (_, place, normal) in self.quadratic(mesh, *triangle).at_abscissas() {
                     volume += (place - apex).dot(normal) / 3.0;
                     area += normal;
                 }
@@ -183,26 +210,26 @@ impl EdgeMiddles {
         volumes_of_grains(network.boundaries(), &cones, network.grain_count())
     }
 
-    fn quadratic(&self, mesh: &TriangleMesh, points: &[DVec3], triangle: u32) -> QuadraticTriangle {
+    fn quadratic(&self, mesh: &TriangleMesh, triangle: u32) -> QuadraticTriangle {
         // An edge of this number joins the corner of the same number and the next.
         QuadraticTriangle {
-            corners: mesh.triangles()[triangle as usize].map(|corner| points[corner as usize]),
-            middles: mesh.triangle_edges(FaceId(triangle)).map(|edge| self.points[edge.index()]),
+            corners: mesh.triangles()[triangle as usize].map(|corner| self.corners[corner as usize]),
+            middles: mesh.triangle_edges(FaceId(triangle)).map(|edge| self.middles[edge.index()]),
         }
     }
 
     /// How the volumes of grains grow as each original moves, which stands for its copies.
-    fn moving_points(&self, network: &Network, points: &[DVec3]) -> Vec<MovingPoint> {
+    fn moving_points(&self, network: &Network) -> Vec<MovingPoint> {
         let level = network.finest_level();
         let mesh = match &level.mesh {
             Mesh::Triangles(mesh) => mesh,
-            Mesh::Segments(mesh) => return self.moving_on_lines(network, mesh.segments(), points),
+            Mesh::Segments(mesh) => return self.moving_on_lines(network, mesh.segments()),
         };
-        let mut moving = of_equal_weight(self.points.len());
+        let mut moving = of_equal_weight(self.middles.len());
         for (triangle, boundary) in (0u32..).zip(&level.boundary_of) {
             let edges = mesh.triangle_edges(FaceId(triangle));
             let mut normals = [DVec3::ZERO; 3];
-            for (weights, _, normal) in self.quadratic(mesh, points, triangle).at_abscissas() {
+            for (weights, _, normal) in self.quadratic(mesh, triangle).at_abscissas() {
                 let of_middles = [0, 1, 2].map(|k| 4.0 * weights[k] * weights[(k + 1) % 3]);
                 normals.iter_mut().zip(of_middles).for_each(|(sum, share)| *sum += normal * share);
             }
@@ -221,11 +248,11 @@ impl EdgeMiddles {
     }
 
     /// In the plane, the area of each grain within parabolas.
-    fn grain_areas(&self, network: &Network, segments: &[[u32; 2]], points: &[DVec3]) -> Vec<f64> {
+    fn grain_areas(&self, network: &Network, segments: &[[u32; 2]]) -> Vec<f64> {
         let level = network.finest_level();
-        let mut areas = network.grain_volumes(&*level, points);
-        for (([from, to], middle), boundary) in segments.iter().zip(&self.points).zip(&level.boundary_of) {
-            let [from, to] = [from, to].map(|end| points[*end as usize]);
+        let mut areas = network.grain_volumes(&*level, &self.corners);
+        for (([from, to], middle), boundary) in segments.iter().zip(&self.middles).zip(&level.boundary_of) {
+            let [from, to] = [from, to].map(|end| self.corners[*end as usize]);
             // A parabola encloses two thirds of the parallelogram around it with its chord.
             let bulge = 2.0 / 3.0 * (*middle - from.midpoint(to)).dot((to - from).cross(DVec3::Z));
             for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
@@ -236,20 +263,16 @@ impl EdgeMiddles {
     }
 
     /// As of [`Self::moving_points`] in the plane.
-    fn moving_on_lines(
-        &self,
-        network: &Network,
-        segments: &[[u32; 2]],
-        points: &[DVec3],
-    ) -> Vec<MovingPoint> {
+    fn moving_on_lines(&self, network: &Network, segments: &[[u32; 2]]) -> Vec<MovingPoint> {
         let level = network.finest_level();
-        let mut moving = of_equal_weight(self.points.len());
+        let mut moving = of_equal_weight(self.middles.len());
         for (segment, ([from, to], boundary)) in segments.iter().zip(&level.boundary_of).enumerate() {
             let original = self.originals[segment].original as usize;
             if self.is_straight[original] {
                 continue;
             }
-            let normal = (points[*to as usize] - points[*from as usize]).cross(DVec3::Z) * (2.0 / 3.0);
+            let normal =
+                (self.corners[*to as usize] - self.corners[*from as usize]).cross(DVec3::Z) * (2.0 / 3.0);
             for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
                 *moving[original].gradients.entry(grain.0).or_default() += normal * sign;
             }
@@ -262,13 +285,13 @@ impl EdgeMiddles {
     fn put_on_walls(&mut self, network: &Network) {
         let (domain, sets) = (network.domain(), network.wall_sets());
         // An original comes before its copies.
-        for edge in 0..self.points.len() {
+        for edge in 0..self.middles.len() {
             let Moved { original, translation } = self.originals[edge];
-            let mut place = self.points[original as usize];
+            let mut place = self.middles[original as usize];
             if translation != Translation::ZERO {
                 place += translation.vector(domain);
             }
-            self.points[edge] = sets.put_on_walls(self.walls[edge], place);
+            self.middles[edge] = sets.put_on_walls(self.walls[edge], place);
         }
     }
 }
