@@ -13,58 +13,87 @@ use super::{CurvedEdges, VolumeMesh, volume};
 
 /// The Jacobian determinant that an element must have everywhere, as a share of what it is with straight edges, and the volume with these, as a share of what it is before points move. Of 200 grains with five elements to a diameter fewer than
 /// 2 in 1000 edges became straight for it.
-pub(super) const LEAST: f64 = 0.2;
+const LEAST: f64 = 0.2;
 
 /// The middle between two corners, by its number in [`EDGES`].
 const MIDDLES: [[usize; 4]; 4] = [[0, 0, 2, 3], [0, 1, 1, 4], [2, 1, 2, 5], [3, 4, 5, 3]];
 
-impl VolumeMesh {
-    /// Moves points and edges of boundaries onto the smooth surface, so that grains keep their volumes. Those of elements that would come near to turning inside out stay where they are, with
-    /// straight edges.
-    pub(crate) fn curve(&mut self, network: &Network, mut boundaries: CurvedBoundaries) {
-        let level = network.finest_level();
-        let Mesh::Triangles(mesh) = &level.mesh else { return };
-        let edges: BTreeMap<[u32; 2], EdgeId> =
-            (0u32..).zip(mesh.edges()).map(|(edge, ends)| (sorted(ends), EdgeId(edge))).collect();
-        let surface = self.points[..self.surface_points].to_vec();
-        let straight_volumes: Vec<f64> =
-            (0..self.tetrahedra.len()).map(|tetrahedron| volume(self.corners(tetrahedron))).collect();
-        loop {
-            let largest_volume_error = boundaries.restore_volumes(network);
-            self.points[..surface.len()].copy_from_slice(boundaries.corners());
-            let middle = |ends: [u32; 2]| edges.get(&ends).map(|edge| boundaries.middles()[edge.index()]);
-            let mut least_jacobian = 1.0f64;
-            let (mut moved, mut bent) = (BTreeSet::new(), BTreeSet::new());
-            for (corners, straight_volume) in self.tetrahedra.iter().zip(&straight_volumes) {
-                let on_boundaries = corners.iter().filter(|corner| (**corner as usize) < surface.len());
-                if on_boundaries.clone().next().is_none() {
-                    continue;
-                }
-                let of_edges = EDGES.map(|ends| sorted(ends.map(|end| corners[end])));
-                let at_edges = of_edges.map(middle);
-                let places = corners.map(|corner| self.points[corner as usize]);
-                let straight = EDGES.map(|[from, to]| places[from].midpoint(places[to]));
-                let at_middles = array::from_fn(|k| at_edges[k].unwrap_or(straight[k]));
-                let (share, _) = jacobian_shares(places, at_middles);
-                least_jacobian = least_jacobian.min(share);
-                if share.min(volume(places) / straight_volume) < LEAST {
-                    let is_moved =
-                        |corner: &u32| boundaries.corners()[*corner as usize] != surface[*corner as usize];
-                    moved.extend(on_boundaries.copied().filter(is_moved));
-                    let own = of_edges.iter().filter_map(|ends| edges.get(ends));
-                    bent.extend(own.copied().filter(|edge| !boundaries.is_straight(*edge)));
-                }
+/// What elements are by their corners, and by the middles of their edges.
+pub(super) struct Measures<Size, Shares> {
+    /// Volume or area, in any unit.
+    pub(super) size: Size,
+    /// A lower bound of the Jacobian determinant, and its mean, as shares of what they are with straight edges.
+    pub(super) jacobian_shares: Shares,
+}
+
+/// Moves points and edges of boundaries onto the smooth surface, so that grains keep their volumes. Those of elements that would come near to turning inside out stay where they are, with
+/// straight edges.
+///
+/// `points` begin with those of boundaries; `ends` tells between which corners the edges of an element are. Gives the middles of edges on boundaries by their ends.
+pub(super) fn curve<const CORNERS: usize, const EDGES: usize>(
+    network: &Network,
+    mut boundaries: CurvedBoundaries,
+    points: &mut [DVec3],
+    elements: &[[u32; CORNERS]],
+    ends: [[usize; 2]; EDGES],
+    measures: &Measures<
+        impl Fn([DVec3; CORNERS]) -> f64,
+        impl Fn([DVec3; CORNERS], [DVec3; EDGES]) -> (f64, f64),
+    >,
+) -> (BTreeMap<[u32; 2], DVec3>, CurvedEdges) {
+    let level = network.finest_level();
+    let all_edges: Vec<[u32; 2]> = match &level.mesh {
+        Mesh::Triangles(mesh) => mesh.edges().collect(),
+        Mesh::Segments(mesh) => mesh.segments().to_vec(),
+    };
+    let edges: BTreeMap<[u32; 2], EdgeId> =
+        (0u32..).zip(all_edges).map(|(edge, ends)| (sorted(ends), EdgeId(edge))).collect();
+    let places = |points: &[DVec3], corners: &[u32; CORNERS]| corners.map(|corner| points[corner as usize]);
+    let sizes: Vec<f64> = elements.iter().map(|corners| (measures.size)(places(points, corners))).collect();
+    let flat = points[..boundaries.corners().len()].to_vec();
+    loop {
+        let largest_volume_error = boundaries.restore_volumes(network);
+        points[..flat.len()].copy_from_slice(boundaries.corners());
+        let mut least_jacobian = 1.0f64;
+        let (mut moved, mut bent) = (BTreeSet::new(), BTreeSet::new());
+        for (corners, size) in elements.iter().zip(&sizes) {
+            let on_boundaries = corners.iter().filter(|corner| (**corner as usize) < flat.len());
+            if on_boundaries.clone().next().is_none() {
+                continue;
             }
-            if moved.is_empty() && bent.is_empty() {
-                let straight = edges.values().filter(|edge| boundaries.is_straight(**edge)).count();
-                let curved = edges.len() - straight;
-                self.curved = Some(CurvedEdges { curved, straight, least_jacobian, largest_volume_error });
-                break;
+            let own = ends.map(|ends| edges.get(&sorted(ends.map(|end| corners[end]))).copied());
+            let places = places(points, corners);
+            let middles = array::from_fn(|k| match own[k] {
+                Some(edge) => boundaries.middles()[edge.index()],
+                None => places[ends[k][0]].midpoint(places[ends[k][1]]),
+            });
+            let (share, _) = (measures.jacobian_shares)(places, middles);
+            least_jacobian = least_jacobian.min(share);
+            if share.min((measures.size)(places) / size) < LEAST {
+                let is_moved =
+                    |corner: &u32| boundaries.corners()[*corner as usize] != flat[*corner as usize];
+                moved.extend(on_boundaries.copied().filter(is_moved));
+                bent.extend(own.into_iter().flatten().filter(|edge| !boundaries.is_straight(*edge)));
             }
-            boundaries.straighten(network, &surface, moved.into_iter(), bent.into_iter());
         }
-        let middles = boundaries.middles();
-        self.middles = edges.into_iter().map(|(ends, edge)| (ends, middles[edge.index()])).collect();
+        if moved.is_empty() && bent.is_empty() {
+            let straight = edges.values().filter(|edge| boundaries.is_straight(**edge)).count();
+            let curved = edges.len() - straight;
+            let middles = boundaries.middles();
+            let middles = edges.into_iter().map(|(ends, edge)| (ends, middles[edge.index()])).collect();
+            return (middles, CurvedEdges { curved, straight, least_jacobian, largest_volume_error });
+        }
+        boundaries.straighten(network, &flat, moved.into_iter(), bent.into_iter());
+    }
+}
+
+impl VolumeMesh {
+    /// Gives tetrahedra second order, as of [`curve`].
+    pub(crate) fn curve(&mut self, network: &Network, boundaries: CurvedBoundaries) {
+        let measures = Measures { size: volume, jacobian_shares };
+        let (middles, curved) =
+            curve(network, boundaries, &mut self.points, &self.tetrahedra, EDGES, &measures);
+        (self.middles, self.curved) = (middles, Some(curved));
     }
 }
 

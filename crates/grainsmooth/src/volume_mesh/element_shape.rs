@@ -11,7 +11,7 @@ pub(crate) enum ElementShape {
 }
 
 /// The edges of a triangle and of a tetrahedron, by the corners that they join, in the order of their middle nodes in Abaqus, CalculiX, Nastran and VTK.
-const TRIANGLE_EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+pub(crate) const TRIANGLE_EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// The faces of a triangle and of a tetrahedron, in the order of Abaqus and CalculiX: from S1 on. Abaqus Analysis User's Guide, "Two-dimensional solid element library",

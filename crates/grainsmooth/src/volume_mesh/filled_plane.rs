@@ -1,17 +1,14 @@
 //! Triangles that fill grains in the plane: how good they are, and their edges on curved boundaries.
 
-use std::array;
-use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use glam::DVec3;
-use polycrystal::{CurvedBoundaries, Mesh, Network, PlaneMesh};
+use polycrystal::{CurvedBoundaries, Network, PlaneMesh};
 use serde::Serialize;
-use subzero::EdgeId;
 
 use super::CurvedEdges;
-use super::curved::{LEAST, least_and_mean};
-use super::element_nodes::sorted;
+use super::curved::{Measures, curve, least_and_mean};
+use super::element_shape::TRIANGLE_EDGES;
 
 /// Triangles that fill grains in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,52 +40,12 @@ pub struct PlaneQuality {
 const NARROW: f64 = 25.0;
 
 impl FilledPlane {
-    /// Moves points and edges of boundaries onto the smooth lines, so that grains keep their areas. Those of elements that would come near to turning inside out stay where they are, with
-    /// straight edges.
-    pub(crate) fn curved(mut mesh: PlaneMesh, network: &Network, mut boundaries: CurvedBoundaries) -> Self {
-        let level = network.finest_level();
-        let Mesh::Segments(lines) = &level.mesh else { return Self { mesh, curved: None } };
-        let edges: BTreeMap<[u32; 2], EdgeId> =
-            (0u32..).zip(lines.segments()).map(|(edge, ends)| (sorted(*ends), EdgeId(edge))).collect();
-        let points = mesh.points[..mesh.line_points].to_vec();
-        let straight_areas: Vec<f64> =
-            (0..mesh.triangles.len()).map(|triangle| doubled_area(mesh.corners(triangle))).collect();
-        let curved = loop {
-            let largest_volume_error = boundaries.restore_volumes(network);
-            mesh.points[..points.len()].copy_from_slice(boundaries.corners());
-            let mut least_jacobian = 1.0f64;
-            let (mut moved, mut bent) = (BTreeSet::new(), BTreeSet::new());
-            for (corners, straight_area) in mesh.triangles.iter().zip(&straight_areas) {
-                let at_boundaries = corners.iter().filter(|corner| (**corner as usize) < points.len());
-                if at_boundaries.clone().next().is_none() {
-                    continue;
-                }
-                let ends = [0, 1, 2].map(|k| sorted([corners[k], corners[(k + 1) % 3]]));
-                let on_boundary = ends.map(|ends| edges.get(&ends).copied());
-                let places = corners.map(|corner| mesh.points[corner as usize]);
-                let at_middles = array::from_fn(|k| match on_boundary[k] {
-                    Some(edge) => boundaries.middles()[edge.index()],
-                    None => places[k].midpoint(places[(k + 1) % 3]),
-                });
-                let (share, _) = jacobian_shares(places, at_middles);
-                least_jacobian = least_jacobian.min(share);
-                if share.min(doubled_area(places) / straight_area) < LEAST {
-                    let is_moved =
-                        |corner: &u32| boundaries.corners()[*corner as usize] != points[*corner as usize];
-                    moved.extend(at_boundaries.copied().filter(is_moved));
-                    let own = on_boundary.into_iter().flatten();
-                    bent.extend(own.filter(|edge| !boundaries.is_straight(*edge)));
-                }
-            }
-            if moved.is_empty() && bent.is_empty() {
-                let straight = edges.values().filter(|edge| boundaries.is_straight(**edge)).count();
-                let curved = edges.len() - straight;
-                break CurvedEdges { curved, straight, least_jacobian, largest_volume_error };
-            }
-            boundaries.straighten(network, &points, moved.into_iter(), bent.into_iter());
-        };
-        let middles = boundaries.middles();
-        mesh.middles = edges.into_iter().map(|(ends, edge)| (ends, middles[edge.index()])).collect();
+    /// Gives triangles second order, as of [`curve`].
+    pub(crate) fn curved(mut mesh: PlaneMesh, network: &Network, boundaries: CurvedBoundaries) -> Self {
+        let measures = Measures { size: doubled_area, jacobian_shares };
+        let (middles, curved) =
+            curve(network, boundaries, &mut mesh.points, &mesh.triangles, TRIANGLE_EDGES, &measures);
+        mesh.middles = middles;
         Self { mesh, curved: Some(curved) }
     }
 

@@ -9,10 +9,10 @@ use crate::mesh::triangle_quality::squared_sine;
 const LEAST_COSINE: f64 = 0.5;
 
 /// Square of the sine of an angle (15 degrees): edges of thinner triangles are not made, but by a collapse that leaves no thinner ones than there were.
-const GOOD: f64 = 0.067;
+const GOOD_SQUARED_SINE: f64 = 0.067;
 
 /// Share by which a flip has to make the square of the sine of the least angle larger, so that flips end.
-const GAIN: f64 = 1e-3;
+const LEAST_GAIN: f64 = 1e-3;
 
 /// Cosines of angles between the normals of two triangles at an edge that are not made, nor made less: inside a boundary folds by more than 72 degrees, between
 /// different ones angles below 26.
@@ -350,7 +350,7 @@ impl Coarsening<'_> {
         moved.iter().all(|(triangle, new)| {
             let old = self.corners(*triangle);
             let is_alike = self.lies_alike(old, *new) || self.is_narrow(old, limit);
-            self.squared_sine(*new) > thinnest.min(GOOD) && is_alike
+            self.squared_sine(*new) > thinnest.min(GOOD_SQUARED_SINE) && is_alike
         })
     }
 
@@ -441,7 +441,7 @@ impl Coarsening<'_> {
             pair.into_iter().map(|corners| self.squared_sine(corners)).fold(f64::INFINITY, f64::min)
         });
         let is_alike = |new| self.lies_alike(one, new) && self.lies_alike(other, new);
-        if after <= before * (1.0 + GAIN) || !is_alike(left) || !is_alike(right) {
+        if after <= before * (1.0 + LEAST_GAIN) || !is_alike(left) || !is_alike(right) {
             return false;
         }
         let right = right.map(|corner| corner.moved(apart));

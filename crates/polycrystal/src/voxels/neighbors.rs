@@ -30,7 +30,7 @@ impl<'a> Neighbors<'a> {
         };
         let points = self.search.cut.copies.with_copies(points);
         let elements = self.search.cut.elements();
-        // Three times the arithmetic of a list of all normals, which would be as large as half of all else.
+        // Three times the arithmetic of a list of all normals, which would take a seventh of the memory of all else.
         let normals = |pair: &[u32; 2]| pair.map(|element| elements.normal(&points, element));
         pairs.par_iter().filter(|pair| is_folded(normals(pair), 0.0)).copied().collect()
     }

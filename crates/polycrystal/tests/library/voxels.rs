@@ -291,8 +291,8 @@ fn short_edges_collapse_and_volumes_stay() {
     }
 }
 
-/// Flat boundaries of small grains. Where volumes make them cross, points stay; where collapses do, all is decimated once more without these. Each time that was
-/// once for both, or nothing was decimated in the end.
+/// Flat boundaries of small grains. Where volumes make them cross, points stay; where collapses do, all is decimated once more without these. Before, all was decimated
+/// anew for either, and in the end nothing was.
 #[test]
 fn points_around_crossings_stay() {
     let options = VoxelOptions { shortest_edge: 2.0, ..VoxelOptions::ALL_POINTS };
