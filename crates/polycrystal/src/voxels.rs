@@ -17,6 +17,7 @@ mod staircase;
 mod surface;
 mod tuning;
 mod untangling;
+mod volume_slopes;
 mod volumes;
 mod whole_grains;
 

@@ -7,6 +7,7 @@ use crate::check::folds::is_folded;
 use crate::check::intersections::{boundary_boxes, crossing_elements};
 use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
+use crate::voxels::elements::CutFaces;
 use crate::voxels::volumes::VolumeSearch;
 
 /// How the elements of a surface meet, wherever its points are.
@@ -18,7 +19,7 @@ pub(super) struct Neighbors<'a> {
 
 impl<'a> Neighbors<'a> {
     pub(super) fn new(search: &'a VolumeSearch<'a>) -> Self {
-        let surface = search.surface(&[]);
+        let surface = search.slopes.surface(&[]);
         let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
         Self { search, adjacency, boundaries: BoundaryElements::new(&surface) }
     }
@@ -28,17 +29,51 @@ impl<'a> Neighbors<'a> {
         let Inner::Listed(pairs) = &self.adjacency.inner else {
             unreachable!("the adjacency of loose elements is a list")
         };
-        let points = self.search.cut.copies.with_copies(points);
-        let elements = self.search.cut.elements();
+        let points = self.search.slopes.cut.copies.with_copies(points);
+        let elements = self.search.slopes.cut.elements();
         // Three times the arithmetic of a list of all normals, which would take a seventh of the memory of all else.
         let normals = |pair: &[u32; 2]| pair.map(|element| elements.normal(&points, element));
         pairs.par_iter().filter(|pair| is_folded(normals(pair), 0.0)).copied().collect()
     }
 
+    /// As [`folds`](Self::folds), of which one element or both have one of some points for a corner; sorted.
+    pub(super) fn folds_at(&self, points: &[DVec3], at: &[u32]) -> Vec<[u32; 2]> {
+        let points = self.search.slopes.cut.copies.with_copies(points);
+        let elements = self.search.slopes.cut.elements();
+        let at_points = at.iter().flat_map(|point| self.search.slopes.at_point(*point));
+        let mut pairs: Vec<[u32; 2]> = at_points.flat_map(|element| self.beside(*element)).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs.retain(|pair| is_folded(pair.map(|element| elements.normal(&points, element)), 0.0));
+        pairs
+    }
+
+    /// An element with each of those beside it in its boundary, the lower first.
+    fn beside(&self, element: u32) -> Vec<[u32; 2]> {
+        let CutFaces { kind_of, copies, .. } = self.search.slopes.cut;
+        let elements = self.search.slopes.cut.elements();
+        let corners = elements.corners(element);
+        let edges = match *corners {
+            [a, b, c] => vec![[a, b], [b, c], [c, a]],
+            _ => corners.iter().map(|end| [*end; 2]).collect(),
+        };
+        let other = |[from, to]: [u32; 2]| {
+            let at_edge = self.search.slopes.at_point(copies.original(from)).iter().filter(|other| {
+                let corners = elements.corners(**other);
+                corners.contains(&from) && corners.contains(&to)
+            });
+            let mut others = at_edge.filter(|other| **other != element);
+            let (Some(other), None) = (others.next(), others.next()) else { return None };
+            let is_same = kind_of[*other as usize] == kind_of[element as usize];
+            is_same.then_some([element.min(*other), element.max(*other)])
+        };
+        edges.into_iter().filter_map(other).collect()
+    }
+
     /// Pairs of elements that meet other than in points and edges that they share.
     pub(super) fn crossings(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let with_copies = self.search.cut.copies.with_copies(points);
-        let surface = self.search.surface(&with_copies);
+        let with_copies = self.search.slopes.cut.copies.with_copies(points);
+        let surface = self.search.slopes.surface(&with_copies);
         let boxes = boundary_boxes(&surface, &self.boundaries);
         crossing_elements(&surface, &self.adjacency, &self.boundaries, &boxes)
     }

@@ -1,5 +1,7 @@
 //! Points that leave no element that crosses another, and fewer folds.
 
+use std::cell::OnceCell;
+
 use cancellation::check_cancelled;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -41,16 +43,17 @@ impl Untangling<'_> {
     /// Folds stay where grains are one voxel thick: a plate has a rim.
     pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
         let neighbors = Neighbors::new(self.search);
+        let home = OnceCell::new();
         let free = vec![false; points.len()];
-        let mut best = self.without_crossings(points, free, volume_error, &neighbors);
+        let mut best = self.without_crossings(points, free, volume_error, &neighbors, &home);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, &neighbors);
+            let is_held = self.smooth_folds(&mut points, &best.folds, &neighbors);
             let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
             if volume_error > VOLUME_TOLERANCE {
                 break;
             }
-            let tried = self.without_crossings(points, is_held, volume_error, &neighbors);
+            let tried = self.without_crossings(points, is_held, volume_error, &neighbors, &home);
             if tried.volume_error > VOLUME_TOLERANCE
                 || tried.crossings > best.crossings
                 || tried.folds.len() >= best.folds.len()
@@ -69,17 +72,17 @@ impl Untangling<'_> {
         mut is_held: Vec<bool>,
         mut volume_error: f64,
         neighbors: &Neighbors<'_>,
+        home: &OnceCell<Vec<DVec3>>,
     ) -> Untangled {
-        let mut home = None;
         for round in 0.. {
             let crossings = neighbors.crossings(&points);
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
                 let folds = neighbors.folds(&points);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
-            let home = home.get_or_insert_with(|| self.home());
-            let marked = self.marked(&crossings, round / self.tuning.rounds_of_ring);
-            for point in (0..points.len()).filter(|point| marked[*point]) {
+            let home = home.get_or_init(|| self.home());
+            for point in self.around(&crossings, round / self.tuning.rounds_of_ring) {
+                let point = point as usize;
                 is_held[point] = true;
                 points[point] = points[point].midpoint(home[point]);
             }
@@ -100,54 +103,57 @@ impl Untangling<'_> {
     /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
     ///
     /// Ends when a wider ring of points mends little.
-    fn smooth_folds(&self, points: &mut [DVec3], neighbors: &Neighbors<'_>) -> Vec<bool> {
+    fn smooth_folds(&self, points: &mut [DVec3], folds: &[[u32; 2]], neighbors: &Neighbors<'_>) -> Vec<bool> {
         let mut is_moved = vec![false; points.len()];
+        let mut folds = folds.to_vec();
         let mut before = usize::MAX;
-        for ring in 0.. {
+        for ring in 0..=self.tuning.rings {
             for _ in 0..self.tuning.rounds_of_smoothing {
                 check_cancelled();
-                let folds = neighbors.folds(points);
                 if folds.is_empty() {
                     return is_moved;
                 }
-                let marked = self.marked(&folds, ring);
-                let smoothed = |point: usize| {
-                    let followed = match self.graph.followed(point) {
-                        [] => self.graph.beside(point),
-                        followed => followed,
-                    };
-                    let place = points[point];
-                    let to = followed
-                        .iter()
-                        .map(|other| across(self.boxes.periods, place, points[*other as usize]));
-                    let mean = to.sum::<DVec3>() / followed.len() as f64;
-                    (point, self.boxes.nearest(point, place + 0.5 * mean))
-                };
-                let moving = (0..points.len()).into_par_iter().filter(|point| marked[*point]);
-                let moved: Vec<(usize, DVec3)> = moving.map(smoothed).collect();
-                moved.into_iter().for_each(|(point, place)| points[point] = place);
-                is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
+                let moving = self.around(&folds, ring);
+                let moved: Vec<DVec3> =
+                    moving.par_iter().map(|point| self.smoothed(points, *point as usize)).collect();
+                for (point, place) in moving.iter().zip(moved) {
+                    points[*point as usize] = place;
+                    is_moved[*point as usize] = true;
+                }
+                folds = neighbors.folds_at(points, &moving);
             }
-            let left = neighbors.folds(points).len();
-            if ring == self.tuning.rings || 2 * left > before {
+            if 2 * folds.len() > before {
                 break;
             }
-            before = left;
+            before = folds.len();
         }
         is_moved
     }
 
-    /// The corners of elements, and all points so many edges around them.
-    fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
-        let mut marked = vec![false; self.graph.count()];
-        let mut last: Vec<u32> = self.search.cut.points_of(pairs).collect();
-        for ring in 0..=rings {
-            last.retain(|point| !std::mem::replace(&mut marked[*point as usize], true));
-            if ring < rings {
-                last = last.iter().flat_map(|point| self.graph.beside(*point as usize)).copied().collect();
-            }
+    /// Half the way from a point to the mean of those that it follows, in its box.
+    fn smoothed(&self, points: &[DVec3], point: usize) -> DVec3 {
+        let followed = match self.graph.followed(point) {
+            [] => self.graph.beside(point),
+            followed => followed,
+        };
+        let place = points[point];
+        let to = followed.iter().map(|other| across(self.boxes.periods, place, points[*other as usize]));
+        let mean = to.sum::<DVec3>() / followed.len() as f64;
+        self.boxes.nearest(point, place + 0.5 * mean)
+    }
+
+    /// The corners of elements, and all points so many edges around them, in order.
+    fn around(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<u32> {
+        let mut points: Vec<u32> = self.search.slopes.cut.points_of(pairs).collect();
+        for _ in 0..rings {
+            let beside = points.iter().flat_map(|point| self.graph.beside(*point as usize));
+            points = beside.chain(&points).copied().collect();
+            points.sort_unstable();
+            points.dedup();
         }
-        marked
+        points.sort_unstable();
+        points.dedup();
+        points
     }
 }
 
