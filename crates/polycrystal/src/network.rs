@@ -1,6 +1,7 @@
 mod build;
 pub(crate) mod coarsening;
 pub(crate) mod control_mesh;
+mod corners;
 pub(crate) mod error;
 pub(crate) mod face_mesh;
 pub(crate) mod fan;

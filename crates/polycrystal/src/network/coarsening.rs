@@ -4,6 +4,7 @@ use glam::DVec3;
 use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
 use crate::mesh::triangle_quality::squared_sine;
+use crate::network::corners::{edges, is_cycle, seen_from, translation_of, with_corner_moved};
 
 /// How much a triangle may turn when one of its corners moves along an edge, or an edge of it flips, as the cosine of the angle: 60 degrees.
 const LEAST_COSINE: f64 = 0.5;
@@ -139,7 +140,11 @@ impl Coarsening<'_> {
     }
 
     fn place(&self, corner: PeriodicVertex) -> DVec3 {
-        self.points[corner.vertex as usize] + corner.translation.vector(self.domain)
+        let place = self.points[corner.vertex as usize];
+        if corner.translation == Translation::ZERO {
+            return place;
+        }
+        place + corner.translation.vector(self.domain)
     }
 
     fn length(&self, [from, to]: [PeriodicVertex; 2]) -> f64 {
@@ -230,10 +235,17 @@ impl Coarsening<'_> {
             .map(|triangle| (*triangle, with_corner_moved(self.corners(*triangle), from, to)))
             .collect();
         // The cheapest first.
-        let is_good = self.is_good(&moved, ends)
-            && self.may_collapse(ends)
-            && self.stays_closed(&moved, to.vertex, collapses);
-        if !is_good {
+        if !self.is_good(&moved, ends) {
+            return false;
+        }
+        let part = self.part(from);
+        let stays_closed = || {
+            // A triangle in place of three may be there already.
+            let is_link_enough = part == Part::Boundary && moved.len() > 1;
+            is_link_enough && self.is_link_of_edge(ends, at_edge.len())
+                || !is_link_enough && self.stays_closed(&moved, to.vertex, collapses)
+        };
+        if !self.may_collapse(part, ends) || !stays_closed() {
             return false;
         }
         let gone = at_edge.iter().map(|(triangle, _)| (*triangle, None));
@@ -241,10 +253,10 @@ impl Coarsening<'_> {
         self.change(gone.chain(moved).collect())
     }
 
-    /// Whether the first end of an edge may go to the other for what both are part of.
-    fn may_collapse(&self, ends: [PeriodicVertex; 2]) -> bool {
+    /// Whether the first end of an edge, which is such a part, may go to the other for what both are part of.
+    fn may_collapse(&self, part: Part, ends: [PeriodicVertex; 2]) -> bool {
         let [from, to] = ends;
-        match self.part(from.vertex) {
+        match part {
             Part::Boundary => true,
             Part::Line(along) => along.contains(&to),
             Part::Node => {
@@ -308,23 +320,26 @@ impl Coarsening<'_> {
                 around.clear();
                 around.extend(self.at_edge(ends));
                 let least = &mut least[usize::from(!self.are_in_one_boundary(&around))];
-                let away =
-                    |(triangle, moved): AtEdge| self.away_from(ends.map(|end| end.moved(moved)), triangle);
-                let is_own = |other: &AtEdge| other.0 == *triangle;
-                let Some(own) = around.iter().copied().find(is_own).map(away) else { continue };
-                for other in around.iter().copied().filter(|other| !is_own(other)) {
-                    *least = least.min(-own.dot(away(other)));
+                let Some(own) = around.iter().find(|other| other.0 == *triangle) else { continue };
+                let own = self.normal_from(ends, *own);
+                for other in &around {
+                    // Those that are in the list and lower have met this one.
+                    if other.0 != *triangle && !(other.0 < *triangle && triangles.contains(&other.0)) {
+                        let other = self.normal_from(ends, *other);
+                        let product = (own.length_squared() * other.length_squared()).sqrt();
+                        *least = least.min(if product > 0.0 { -own.dot(other) / product } else { 0.0 });
+                    }
                 }
             }
         }
         least
     }
 
-    /// The direction in the plane of a triangle that leads from an edge of it to its third corner at a right angle.
-    fn away_from(&self, ends: [PeriodicVertex; 2], triangle: u32) -> DVec3 {
+    /// The normal of a triangle at an edge as that runs.
+    fn normal_from(&self, ends: [PeriodicVertex; 2], (triangle, moved): AtEdge) -> DVec3 {
+        let ends = ends.map(|end| end.moved(moved));
         let tip = self.corners(triangle).into_iter().find(|corner| !ends.contains(corner)).unwrap_or(ends[0]);
-        let [from, to, tip] = [ends[0], ends[1], tip].map(|corner| self.place(corner));
-        (tip - from).reject_from(to - from).normalize_or_zero()
+        self.normal([ends[0], ends[1], tip])
     }
 
     /// Whether a point may be where another is for all that the walls ask.
@@ -343,14 +358,19 @@ impl Coarsening<'_> {
 
     /// Whether triangles stay as they lie, and are not thin, when a corner of them moves along an edge.
     fn is_good(&self, moved: &[(u32, [PeriodicVertex; 3])], ends: [PeriodicVertex; 2]) -> bool {
-        let before = self.at_points[ends[0].vertex as usize].iter();
-        let thinnest =
-            before.map(|triangle| self.squared_sine(self.corners(*triangle))).fold(f64::INFINITY, f64::min);
+        let thinnest = |all: &mut dyn Iterator<Item = [PeriodicVertex; 3]>| {
+            all.map(|corners| self.squared_sine(corners)).fold(f64::INFINITY, f64::min)
+        };
+        let after = thinnest(&mut moved.iter().map(|(_, corners)| *corners));
+        let before =
+            || self.at_points[ends[0].vertex as usize].iter().map(|triangle| self.corners(*triangle));
+        if after <= GOOD_SQUARED_SINE && after <= thinnest(&mut before()) {
+            return false;
+        }
         let limit = self.limit(ends).unwrap_or(0.0);
         moved.iter().all(|(triangle, new)| {
             let old = self.corners(*triangle);
-            let is_alike = self.lies_alike(old, *new) || self.is_narrow(old, limit);
-            self.squared_sine(*new) > thinnest.min(GOOD_SQUARED_SINE) && is_alike
+            self.lies_alike(old, *new) || self.is_narrow(old, limit)
         })
     }
 
@@ -374,6 +394,16 @@ impl Coarsening<'_> {
     /// The square of the sine of a triangle's least angle.
     fn squared_sine(&self, corners: [PeriodicVertex; 3]) -> f64 {
         squared_sine(corners.map(|corner| self.place(corner)))
+    }
+
+    /// Whether the points beside both ends of an edge are across from it in its triangles alone, so many: then an end inside a boundary may go to the other, and surfaces
+    /// stay as they are (Dey and others, Topology preserving edge contraction, 1999).
+    fn is_link_of_edge(&self, [from, to]: [PeriodicVertex; 2], triangles: usize) -> bool {
+        let there = self.beside(to.vertex);
+        let seen = |other: &PeriodicVertex| other.moved(Translation::ZERO - to.translation);
+        let common =
+            self.beside(from.vertex).iter().filter(|other| there.binary_search(&seen(other)).is_ok()).count();
+        common == triangles
     }
 
     /// Whether around the end of an edge that collapses each grain's surface is still one closed fan, and no two triangles have the same corners.
@@ -447,51 +477,4 @@ impl Coarsening<'_> {
         let right = right.map(|corner| corner.moved(apart));
         self.change(vec![(first.0, Some(left)), (second.0, Some(right))])
     }
-}
-
-/// The edges of a triangle, the end of smaller number first, as seen from there.
-fn edges([a, b, c]: [PeriodicVertex; 3]) -> impl Iterator<Item = [PeriodicVertex; 2]> {
-    [[a, b], [b, c], [c, a]].into_iter().map(|[from, to]| {
-        let [first, second] = [from.min(to), from.max(to)];
-        [first, second].map(|end| end.moved(Translation::ZERO - first.translation))
-    })
-}
-
-/// How far a triangle's corner at a point is moved from the point.
-fn translation_of(corners: [PeriodicVertex; 3], point: u32) -> Translation {
-    let own = corners.into_iter().find(|corner| corner.vertex == point);
-    own.expect("the triangle is at this point").translation
-}
-
-/// The corners of a triangle as seen from one of its points.
-fn seen_from(corners: [PeriodicVertex; 3], point: u32) -> [PeriodicVertex; 3] {
-    let moved = translation_of(corners, point);
-    corners.map(|corner| corner.moved(Translation::ZERO - moved))
-}
-
-/// The corners of a triangle with one point put where another is, as seen from the first.
-fn with_corner_moved(corners: [PeriodicVertex; 3], from: u32, to: PeriodicVertex) -> [PeriodicVertex; 3] {
-    corners.map(|corner| if corner.vertex == from { to.moved(corner.translation) } else { corner })
-}
-
-/// Whether segments, all with the same first part, make up one closed line that passes no point twice.
-fn is_cycle(segments: &[(Side, [PeriodicVertex; 2])]) -> bool {
-    let mut ends: Vec<[PeriodicVertex; 2]> =
-        segments.iter().flat_map(|(_, [from, to])| [[*from, *to], [*to, *from]]).collect();
-    ends.sort_unstable();
-    let others = |of: PeriodicVertex| {
-        let first = ends.partition_point(|[from, _]| *from < of);
-        let mut others = ends[first..].iter().take_while(|[from, _]| *from == of).map(|[_, to]| *to);
-        let [Some(one), Some(other), None] = std::array::from_fn(|_| others.next()) else { return None };
-        Some([one, other])
-    };
-    let start = ends[0][0];
-    let (mut before, mut at, mut count) = (start, ends[0][1], 1);
-    while at != start {
-        let Some([one, other]) = others(at) else { return false };
-        let next = if one == before { other } else { one };
-        (before, at) = (at, next);
-        count += 1;
-    }
-    count == segments.len() && count > 2 && others(start).is_some()
 }

@@ -16,9 +16,9 @@ use crate::voxels::elements::{CutFaces, ElementList};
 use crate::voxels::labels::Voxels;
 use crate::voxels::lattice::Lattice;
 use crate::voxels::neighbors::Neighbors;
-use crate::voxels::slabs::{Corners, Slabs};
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
+use crate::voxels::tiles::{Corners, Tiles};
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::untangling::VOLUME_TOLERANCE;
 use crate::voxels::volumes::{VolumeSearch, Wanted};
@@ -91,16 +91,15 @@ impl Decimation<'_> {
                     triangles[..count].iter().map(|corners| Some(corners.map(vertex))).collect();
                 let corners = left.iter().flatten().map(|corners| &corners[..]);
                 let limits = self.limits(is_held, corners.zip(sides_of()));
-                let slabs = Slabs {
+                let tiles = Tiles {
                     domain: self.domain,
                     points,
                     limits: &limits,
                     kind_of,
                     sides: &sides,
-                    axis: self.lattice.longest_axis(),
-                    thickness: self.tuning.slab * self.shortest_edge,
+                    edge: self.tuning.tile * self.shortest_edge,
                 };
-                slabs.coarsen(&mut left);
+                tiles.coarsen(&mut left);
                 let (kept, triangles) = renumbered(points.len(), &left);
                 let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));
                 let (triangles, copies) = self.unwrapped(kept.len(), &triangles, &mut kind_of);

@@ -117,11 +117,6 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// The axis along which there are most voxels; of equals the last, along which points are numbered.
-    pub(super) fn longest_axis(&self) -> usize {
-        (0..3).max_by_key(|axis| self.shape[*axis]).unwrap_or(0)
-    }
-
     /// Number of voxels that a label had at first: no grain is larger than the outside.
     pub(super) fn volume(&self, label: u32) -> u64 {
         if label == OUTSIDE { u64::MAX } else { self.sizes[label as usize] }

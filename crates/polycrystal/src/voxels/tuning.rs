@@ -35,8 +35,8 @@ pub struct VoxelTuning {
     /// How far a point that is left may move from its place along each axis, so that grains have their volumes again: chords of curved boundaries take some. With `within`,
     /// edges of three voxels left balls of twelve voxels without theirs.
     pub within_when_decimated: f64,
-    /// Thickness of the slabs in which edges collapse side by side, in units of the shortest edge asked for: many for all threads, and most of each away from its borders.
-    pub slab: f64,
+    /// Edge of the cubes in which edges collapse side by side, in units of the shortest edge asked for: many for all threads, each small enough to stay in the cache, and most of each away from its sides.
+    pub tile: f64,
     /// Rounds of decimation, each of which leaves the points around faults of the one before; then nothing is decimated.
     pub decimations: usize,
     /// How far around a fault points stay, in units of the shortest edge asked for.
@@ -60,7 +60,7 @@ impl Default for VoxelTuning {
             longest_motion: 0.25,
             longest_of_grain: 0.25,
             within_when_decimated: 1.0,
-            slab: 10.0,
+            tile: 25.0,
             decimations: 8,
             held_around: 2.0,
         }
