@@ -30,7 +30,6 @@ use bending::{Boxes, least_bending};
 use decimation::{Decimation, Faulty};
 use elements::{CutFaces, at_corners};
 use graph::Graph;
-use labels::OUTSIDE;
 pub use labels::{VoxelLabel, Voxels};
 use lattice::Lattice;
 use staircase::{Staircase, sides_of_whole_grains};
@@ -119,8 +118,7 @@ pub fn smooth_voxels_tuned(
     let kinds = staircase.kinds.clone();
     let sides = sides_of_whole_grains(&kinds, is_periodic);
     let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
-    let is_open = kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
-    let wanted = Wanted { volumes: &counts, sides: &sides, is_open };
+    let wanted = Wanted { volumes: &counts, sides: &sides };
     let whole = smoothed(staircase, &lattice, &wanted, tuning, &progress);
     let voxel = voxels.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
@@ -195,8 +193,8 @@ fn smoothed(
     // Where there are many voxels, memory is short.
     drop((staircase.faces, staircase.kind_of));
     let search = VolumeSearch::new(points.len(), &cut, wanted, tuning);
-    let volume_error = search.restore(&mut points, &boxes, &vec![false; graph.count()]);
+    let restored = search.restore(&mut points, &boxes, &vec![false; graph.count()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };
-    let points = untangling.untangle(points, volume_error);
+    let points = untangling.untangle(points, restored);
     VoxelSurface { points, places: staircase.places, cut }
 }

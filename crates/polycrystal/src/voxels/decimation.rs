@@ -20,8 +20,7 @@ use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tiles::{Corners, Tiles};
 use crate::voxels::tuning::VoxelTuning;
-use crate::voxels::untangling::VOLUME_TOLERANCE;
-use crate::voxels::volumes::{VolumeSearch, Wanted};
+use crate::voxels::volumes::{VOLUME_TOLERANCE, VolumeSearch, Wanted};
 use crate::{BoundaryId, GrainId, Side, Surface};
 
 /// A surface whose short edges are to collapse.
@@ -142,7 +141,7 @@ impl Decimation<'_> {
         let mut best = None;
         loop {
             let mut points = left.clone();
-            let error = search.restore(&mut points, &boxes, &stays);
+            let error = search.restore(&mut points, &boxes, &stays).error;
             if error > VOLUME_TOLERANCE {
                 return best.unwrap_or(points);
             }

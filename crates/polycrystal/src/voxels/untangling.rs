@@ -12,10 +12,7 @@ use crate::voxels::copies::across;
 use crate::voxels::graph::Graph;
 use crate::voxels::neighbors::Neighbors;
 use crate::voxels::tuning::VoxelTuning;
-use crate::voxels::volumes::VolumeSearch;
-
-/// Largest error of a volume that mended folds may leave, as a share of it.
-pub(super) const VOLUME_TOLERANCE: f64 = 1e-12;
+use crate::voxels::volumes::{Restored, VOLUME_TOLERANCE, VolumeSearch};
 
 /// What points are moved by.
 pub(super) struct Untangling<'a> {
@@ -41,19 +38,19 @@ impl Untangling<'_> {
     /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
     ///
     /// Folds stay where grains are one voxel thick: a plate has a rim.
-    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
+    pub(super) fn untangle(&self, points: Vec<DVec3>, restored: Restored) -> Vec<DVec3> {
         let neighbors = Neighbors::new(self.search);
         let home = OnceCell::new();
         let free = vec![false; points.len()];
-        let mut best = self.without_crossings(points, free, volume_error, &neighbors, &home);
+        let mut best = self.without_crossings(points, free, restored, &neighbors, &home);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
             let is_held = self.smooth_folds(&mut points, &best.folds, &neighbors);
-            let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
-            if volume_error > VOLUME_TOLERANCE {
+            let restored = self.search.restore(&mut points, self.boxes, &is_held);
+            if restored.error > VOLUME_TOLERANCE {
                 break;
             }
-            let tried = self.without_crossings(points, is_held, volume_error, &neighbors, &home);
+            let tried = self.without_crossings(points, is_held, restored, &neighbors, &home);
             if tried.volume_error > VOLUME_TOLERANCE
                 || tried.crossings > best.crossings
                 || tried.folds.len() >= best.folds.len()
@@ -65,20 +62,22 @@ impl Untangling<'_> {
         best.points
     }
 
-    /// Points of elements that cross go half the way home, and stay there while the others restore the volumes.
+    /// Points of elements that cross go half the way home, and stay there while the others restore the volumes. Those of grains that cannot have their volumes then go all
+    /// the way.
     fn without_crossings(
         &self,
         mut points: Vec<DVec3>,
         mut is_held: Vec<bool>,
-        mut volume_error: f64,
+        mut restored: Restored,
         neighbors: &Neighbors<'_>,
         home: &OnceCell<Vec<DVec3>>,
     ) -> Untangled {
         for round in 0.. {
             let crossings = neighbors.crossings(&points);
-            if crossings.is_empty() || round == self.tuning.crossing_rounds {
+            let is_done = crossings.is_empty() && restored.stuck.is_empty();
+            if is_done || round == self.tuning.crossing_rounds {
                 let folds = neighbors.folds(&points);
-                return Untangled { points, folds, crossings: crossings.len(), volume_error };
+                return Untangled { points, folds, crossings: crossings.len(), volume_error: restored.error };
             }
             let home = home.get_or_init(|| self.home());
             for point in self.around(&crossings, round / self.tuning.rounds_of_ring) {
@@ -86,7 +85,11 @@ impl Untangling<'_> {
                 is_held[point] = true;
                 points[point] = points[point].midpoint(home[point]);
             }
-            volume_error = self.search.restore(&mut points, self.boxes, &is_held);
+            for point in self.search.slopes.points_of(&restored.stuck) {
+                is_held[point as usize] = true;
+                points[point as usize] = home[point as usize];
+            }
+            restored = self.search.restore(&mut points, self.boxes, &is_held);
         }
         unreachable!("rounds end")
     }

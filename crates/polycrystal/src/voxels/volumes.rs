@@ -7,6 +7,7 @@ use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
 use crate::Side;
+use crate::mesh::id::id;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::voxels::bending::Boxes;
 use crate::voxels::elements::CutFaces;
@@ -19,14 +20,26 @@ const SOLVED: f64 = 1e-6;
 /// What volumes may lack in the end, as a share of each.
 const TOLERANCE: f64 = 1e-13;
 
+/// Largest error of a volume that mended folds may leave, as a share of it.
+pub(super) const VOLUME_TOLERANCE: f64 = 1e-12;
+
+/// How much more grains gain than others lose when points move, as a share, for rounding alone.
+const ROUNDING: f64 = 1e-9;
+
 /// What grains are to have.
 pub(super) struct Wanted<'a> {
     /// Volume of each grain, in the unit of the points.
     pub(super) volumes: &'a [f64],
     /// The sides of each kind of face.
     pub(super) sides: &'a [[Side; 2]],
-    /// Whether some boundary at the outside is free to move.
-    pub(super) is_open: bool,
+}
+
+/// What a search for volumes found.
+pub(super) struct Restored {
+    /// The largest error that is left, as a share of a volume.
+    pub(super) error: f64,
+    /// Grains that cannot have their volumes, as too many of their points stay.
+    pub(super) stuck: Vec<u32>,
 }
 
 /// Newton's search for points.
@@ -47,27 +60,29 @@ impl<'a> VolumeSearch<'a> {
         Self { slopes: VolumeSlopes::new(point_count, cut, wanted.sides), wanted, tuning }
     }
 
-    /// Moves points within their boxes, but for some that stay, until grains have their volumes, and returns the largest error that is left, as a share of a volume.
+    /// Moves points within their boxes, but for some that stay, until grains have their volumes.
     ///
     /// Newton's method: all points move along the slopes of the volumes, by one multiplier for each grain. What the bound of a box takes from that, the other points make
     /// up for in the next round.
-    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes<'_>, stays: &[bool]) -> f64 {
+    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes<'_>, stays: &[bool]) -> Restored {
         let volumes = self.wanted.volumes;
         let mut is_held = vec![BVec3::FALSE; points.len()];
         let mut motions = vec![DVec3::ZERO; points.len()];
-        let mut largest = f64::INFINITY;
+        let mut restored = Restored { error: f64::INFINITY, stuck: Vec::new() };
         for _ in 0..self.tuning.volume_rounds {
             check_cancelled();
             let is_bound = |point: usize| boxes.is_fixed(point) | is_held[point] | BVec3::splat(stays[point]);
             let growth = self.slopes.growth(volumes.len(), points, is_bound, &mut motions);
-            let missing: Vec<f64> =
+            let mut missing: Vec<f64> =
                 volumes.iter().zip(growth.volumes).map(|(wanted, is)| wanted - is).collect();
-            largest =
+            restored.error =
                 missing.iter().zip(volumes).map(|(lack, wanted)| (lack / wanted).abs()).fold(0.0, f64::max);
-            if largest <= TOLERANCE {
+            restored.stuck.clear();
+            if restored.error <= TOLERANCE {
                 break;
             }
-            let multipliers = self.multipliers(&growth.matrix, missing);
+            restored.stuck = give_up_sums(&growth.matrix, &mut missing, volumes);
+            let multipliers = multipliers(&growth.matrix, &missing);
             self.slopes.motions(points, &multipliers, &mut motions);
             let moving = points.par_iter_mut().zip(&mut is_held).zip(&motions).zip(stays).enumerate();
             moving.filter(|(_, (_, stays))| !**stays).for_each(|(point, (((place, is_held), motion), _))| {
@@ -78,37 +93,63 @@ impl<'a> VolumeSearch<'a> {
                 *is_held = inside.cmpne(wanted);
             });
         }
-        largest
+        restored
     }
+}
 
-    /// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
-    fn multipliers(&self, matrix: &[BTreeMap<u32, f64>], mut missing: Vec<f64>) -> Vec<f64> {
-        let apply = |multipliers: &[f64]| -> Vec<f64> {
-            let row = |row: &BTreeMap<u32, f64>| {
-                row.iter().map(|(other, value)| value * multipliers[*other as usize]).sum()
-            };
-            matrix.par_iter().map(row).collect()
-        };
-        let diagonal: Vec<f64> =
-            (0u32..).zip(matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
-        let can_grow: Vec<bool> = diagonal.iter().map(|diagonal| *diagonal > 0.0).collect();
-        // A grain whose points are all at the walls of their boxes waits.
-        missing.iter_mut().zip(&can_grow).filter(|(_, can)| !**can).for_each(|(missing, _)| *missing = 0.0);
-        if !self.wanted.is_open {
-            // No motion changes the sum, so what waiting grains and rounding leave of it has no answer.
-            let growing = can_grow.iter().filter(|can| **can).count();
-            let rest = missing.iter().sum::<f64>() / growing.max(1) as f64;
-            missing
-                .iter_mut()
-                .zip(&can_grow)
-                .filter(|(_, can)| **can)
-                .for_each(|(missing, _)| *missing -= rest);
+/// Takes from what grains lack that which no motion gives them: grains that exchange volumes with each other alone keep the sum of these. Returns the grains of such
+/// groups that lack something together, but for a group of most grains, which has what the others lack.
+fn give_up_sums(matrix: &[BTreeMap<u32, f64>], missing: &mut [f64], volumes: &[f64]) -> Vec<u32> {
+    let mut is_known = vec![false; missing.len()];
+    let mut groups = Vec::new();
+    for first in 0..missing.len() {
+        if std::mem::replace(&mut is_known[first], true) {
+            continue;
         }
-        let precondition = |residual: &[f64]| -> Vec<f64> {
-            let entry =
-                |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
-            residual.iter().zip(&diagonal).map(entry).collect()
-        };
-        solve(apply, precondition, &missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
+        let mut group = vec![id(first)];
+        let mut next = 0;
+        while let Some(grain) = group.get(next) {
+            next += 1;
+            let row = &matrix[*grain as usize];
+            let beside = row.iter().filter(|(_, value)| **value != 0.0).map(|(other, _)| *other);
+            let new: Vec<u32> =
+                beside.filter(|other| !std::mem::replace(&mut is_known[*other as usize], true)).collect();
+            group.extend(new);
+        }
+        // What a grain takes from others is what these lose, unless the outside takes part.
+        let is_closed = group.iter().all(|grain| {
+            let row = &matrix[*grain as usize];
+            row.values().sum::<f64>() <= ROUNDING * row.get(grain).copied().unwrap_or(0.0)
+        });
+        if is_closed {
+            groups.push(group);
+        }
     }
+    let mut stuck = Vec::new();
+    for group in groups {
+        let rest = group.iter().map(|grain| missing[*grain as usize]).sum::<f64>() / group.len() as f64;
+        group.iter().for_each(|grain| missing[*grain as usize] -= rest);
+        let lacks = |grain: &u32| rest.abs() > VOLUME_TOLERANCE * volumes[*grain as usize];
+        if 2 * group.len() <= missing.len() && group.iter().any(lacks) {
+            stuck.extend(group);
+        }
+    }
+    stuck
+}
+
+/// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
+fn multipliers(matrix: &[BTreeMap<u32, f64>], missing: &[f64]) -> Vec<f64> {
+    let apply = |multipliers: &[f64]| -> Vec<f64> {
+        let row = |row: &BTreeMap<u32, f64>| {
+            row.iter().map(|(other, value)| value * multipliers[*other as usize]).sum()
+        };
+        matrix.par_iter().map(row).collect()
+    };
+    let diagonal: Vec<f64> =
+        (0u32..).zip(matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
+    let precondition = |residual: &[f64]| -> Vec<f64> {
+        let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
+        residual.iter().zip(&diagonal).map(entry).collect()
+    };
+    solve(apply, precondition, missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
 }
