@@ -21,7 +21,7 @@ mod volume_slopes;
 mod volumes;
 mod whole_grains;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::network::labelled_mesh::but_folded;
 use crate::validate::certificate;
@@ -30,6 +30,7 @@ use bending::{Boxes, least_bending};
 use decimation::{Decimation, Faulty};
 use elements::{CutFaces, at_corners};
 use graph::Graph;
+use labels::Grid;
 pub use labels::{VoxelLabel, Voxels};
 use lattice::Lattice;
 use staircase::{Staircase, sides_of_whole_grains};
@@ -83,7 +84,7 @@ impl VoxelOptions {
 /// // 4 x 4 x 4 voxels, x fastest: two grains that meet in the middle.
 /// let labels = (0..64).map(|voxel| VoxelLabel::of(GrainId(u32::from(voxel % 4 >= 2)))).collect();
 /// let voxels = Voxels::new(Domain::unit_cube(), [4, 4, 4], labels);
-/// let smoothed = smooth_voxels(&voxels, VoxelOptions::ALL_POINTS, |_done, _of| ())?;
+/// let smoothed = smooth_voxels(voxels, VoxelOptions::ALL_POINTS, |_done, _of| ())?;
 /// assert!(smoothed.certificate.is_good());
 /// assert_eq!(smoothed.network.grain_count(), 2);
 /// # Ok::<(), polycrystal::NetworkError>(())
@@ -93,7 +94,7 @@ impl VoxelOptions {
 /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`] where some number below the largest has no voxel; [`NetworkError::VoxelsTouch`] when a grain touches itself and its voxels
 /// cannot be relabelled; [`NetworkError::ShortPeriod`], [`NetworkError::EndlessGrain`] and [`NetworkError::PeriodicPores`] where the box has periods; [`NetworkError::Invalid`] when elements cross that could not be untangled, or volumes are not those of the voxels.
 pub fn smooth_voxels(
-    voxels: &Voxels,
+    voxels: Voxels,
     options: VoxelOptions,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
@@ -103,30 +104,33 @@ pub fn smooth_voxels(
 /// As [`smooth_voxels`], by other numbers than its own.
 #[doc(hidden)]
 pub fn smooth_voxels_tuned(
-    voxels: &Voxels,
+    voxels: Voxels,
     options: VoxelOptions,
     tuning: &VoxelTuning,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
-    let mut lattice = Lattice::new(voxels)?;
-    let (staircase, relabelled) = {
+    let (staircase, counts, relabelled) = {
+        let mut lattice = Lattice::new(&voxels)?;
         let mut mixed = lattice.mixed_places();
         let relabelled = lattice.part_what_touches(&mut mixed)?;
-        (Staircase::new(&lattice, &mixed, &whole_grains(&lattice, &mixed)?), relabelled)
+        (Staircase::new(&lattice, &mixed, &whole_grains(&lattice, &mixed)?), lattice.counts, relabelled)
     };
-    let is_periodic = voxels.domain().is_periodic();
+    // Where there are many voxels, memory is short.
+    let Voxels { grid, labels } = voxels;
+    drop(labels);
+    let is_periodic = grid.domain.is_periodic();
     let kinds = staircase.kinds.clone();
     let sides = sides_of_whole_grains(&kinds, is_periodic);
-    let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
+    let counts: Vec<f64> = counts.iter().map(|count| *count as f64).collect();
     let wanted = Wanted { volumes: &counts, sides: &sides };
-    let whole = smoothed(staircase, &lattice, &wanted, tuning, &progress);
-    let voxel = voxels.spacing().element_product();
+    let whole = smoothed(staircase, &grid, &wanted, tuning, &progress);
+    let voxel = grid.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
     let network = |found: &VoxelSurface| -> Result<SmoothedVoxels, (NetworkError, Faulty)> {
-        let points = found.in_domain(voxels);
+        let points = found.in_domain(&grid);
         let faulty = |error: NetworkError, surface: &Surface<'_>| {
             let faulty = match &error {
-                NetworkError::Invalid(faults) => Faulty::new(faults, surface, voxels),
+                NetworkError::Invalid(faults) => Faulty::new(faults, surface, &grid),
                 _ => Faulty::default(),
             };
             (error, faulty)
@@ -134,7 +138,7 @@ pub fn smooth_voxels_tuned(
         let (network, points, certificate) = if is_periodic {
             let faces = found.torus_faces(&kinds);
             let (network, points) =
-                Network::of_torus_faces(voxels.domain(), &points, faces, volumes.clone(), options.junctions)
+                Network::of_torus_faces(&grid.domain, &points, faces, volumes.clone(), options.junctions)
                     .map_err(|error| (error, Faulty::default()))?;
             let certificate =
                 but_folded(certificate(&network, &points, network.cell_volumes())).map_err(|error| {
@@ -146,7 +150,7 @@ pub fn smooth_voxels_tuned(
             let elements = found.cut.elements();
             let surface =
                 Surface { points: &points, elements, boundary_of: &found.cut.kind_of, sides: &sides };
-            Network::of_measured(voxels.domain(), &surface, Some(&volumes), options.junctions)
+            Network::of_measured(&grid.domain, &surface, Some(&volumes), options.junctions)
                 .map_err(|error| faulty(error, &surface))?
         };
         Ok(SmoothedVoxels { network, points, certificate, relabelled })
@@ -154,8 +158,8 @@ pub fn smooth_voxels_tuned(
     if options.shortest_edge > 0.0 {
         let decimation = Decimation {
             whole: &whole,
-            domain: &lattice.domain(),
-            lattice: &lattice,
+            domain: &grid.in_voxels(),
+            grid: &grid,
             kinds: &kinds,
             wanted: &wanted,
             shortest_edge: options.shortest_edge,
@@ -176,12 +180,12 @@ pub fn smooth_voxels_tuned(
 /// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings.
 fn smoothed(
     staircase: Staircase,
-    lattice: &Lattice<'_>,
+    grid: &Grid,
     wanted: &Wanted<'_>,
     tuning: &VoxelTuning,
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> VoxelSurface {
-    let boxes = Boxes::new(&staircase.places, lattice, tuning.within);
+    let boxes = Boxes::new(&staircase.places, grid, tuning.within);
     let (graph, starts) = {
         let faces = &staircase.faces;
         let faces_at = at_corners(staircase.places.len(), faces.len(), |face| faces.corners(face));
@@ -189,12 +193,13 @@ fn smoothed(
         (Graph::new(&staircase, &faces_at), starts(&boxes, &faces_at, corners, tuning.apart))
     };
     let mut points = least_bending(&graph, &starts, &boxes, tuning, progress);
-    let cut = CutFaces::new(&staircase, lattice, &points);
+    let apart: Vec<(u32, Vec3)> = (0u32..).zip(starts).filter(|(_, start)| *start != Vec3::ZERO).collect();
+    let cut = CutFaces::new(&staircase, grid, &points);
     // Where there are many voxels, memory is short.
     drop((staircase.faces, staircase.kind_of));
     let search = VolumeSearch::new(points.len(), &cut, wanted, tuning);
     let restored = search.restore(&mut points, &boxes, &vec![false; graph.count()]);
-    let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };
+    let untangling = Untangling { graph: &graph, boxes: &boxes, apart: &apart, search: &search, tuning };
     let points = untangling.untangle(points, restored);
     VoxelSurface { points, places: staircase.places, cut }
 }

@@ -86,7 +86,7 @@ pub fn smooth_map(
             shortest_edge: run.network.shortest_edge(measured.map.is_plane()),
         };
         let voxels = voxels(measured.map)?;
-        let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
+        let smoothed = smooth_voxels(voxels, options, |done, count| progress(Stage::Network, done, count));
         let SmoothedVoxels { network, points, certificate, relabelled } =
             smoothed.map_err(|error| match error {
                 NetworkError::Invalid(faults) => Error::MixedVoxels { path: path.to_owned(), faults },

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::mesh::id::id;
 use crate::voxels::copies::across;
 use crate::voxels::graph::{Graph, few};
-use crate::voxels::lattice::Lattice;
+use crate::voxels::labels::Grid;
 use crate::voxels::tuning::VoxelTuning;
 
 /// The places of points, and how these may move from there: by [`VoxelTuning::within`] along each axis that is free.
@@ -24,13 +24,13 @@ pub(super) struct Boxes<'a> {
 }
 
 impl<'a> Boxes<'a> {
-    /// The boxes around places of a lattice.
-    pub(super) fn new(places: &'a [UVec3], lattice: &Lattice<'_>, within: f64) -> Self {
+    /// The boxes around places of the lattice between voxels.
+    pub(super) fn new(places: &'a [UVec3], grid: &Grid, within: f64) -> Self {
         Self {
             places,
-            last: UVec3::from_array(lattice.shape.map(id)),
-            is_periodic: lattice.periodic.into(),
-            periods: lattice.periods(),
+            last: UVec3::from_array(grid.shape.map(id)),
+            is_periodic: grid.domain.periodic(),
+            periods: grid.periods(),
             within,
         }
     }

@@ -13,8 +13,7 @@ use crate::network::line_coarsening::coarsened_segments;
 use crate::voxels::bending::Boxes;
 use crate::voxels::copies::Copies;
 use crate::voxels::elements::{CutFaces, ElementList};
-use crate::voxels::labels::Voxels;
-use crate::voxels::lattice::Lattice;
+use crate::voxels::labels::Grid;
 use crate::voxels::neighbors::Neighbors;
 use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
@@ -28,7 +27,7 @@ pub(super) struct Decimation<'a> {
     pub(super) whole: &'a VoxelSurface,
     /// The box, in units of voxels.
     pub(super) domain: &'a Domain,
-    pub(super) lattice: &'a Lattice<'a>,
+    pub(super) grid: &'a Grid,
     pub(super) kinds: &'a [Kind],
     pub(super) wanted: &'a Wanted<'a>,
     /// Shorter edges collapse.
@@ -46,10 +45,10 @@ pub(super) struct Faulty {
 }
 
 impl Faulty {
-    /// Where the faults of a surface are, as seen in the box of some voxels; along periods also beside it.
-    pub(super) fn new(faults: &Faults, surface: &Surface<'_>, voxels: &Voxels) -> Self {
+    /// Where the faults of a surface are, as seen in the box; along periods also beside it.
+    pub(super) fn new(faults: &Faults, surface: &Surface<'_>, grid: &Grid) -> Self {
         let (mut positions, mut grains) = (Vec::new(), Vec::new());
-        let (domain, spacing) = (voxels.domain(), voxels.spacing());
+        let (domain, spacing) = (&grid.domain, grid.spacing());
         let (size, periodic) = (domain.size() / spacing, domain.periodic());
         for fault in &faults.0 {
             let Some(position) = fault.position(surface) else {
@@ -130,7 +129,7 @@ impl Decimation<'_> {
         places: &[UVec3],
         cut: &CutFaces,
     ) -> Vec<DVec3> {
-        let boxes = Boxes::new(places, self.lattice, self.tuning.within_when_decimated);
+        let boxes = Boxes::new(places, self.grid, self.tuning.within_when_decimated);
         let search = VolumeSearch::new(left.len(), cut, self.wanted, self.tuning);
         let neighbors = Neighbors::new(&search);
         let faults = |points: &[DVec3]| {
@@ -161,7 +160,7 @@ impl Decimation<'_> {
         elements: &[[PeriodicVertex; N]],
         kind_of: &mut Vec<BoundaryId>,
     ) -> (Vec<[u32; N]>, Copies) {
-        Copies::unwrapped(count, self.lattice.periods(), elements, kind_of, self.kinds)
+        Copies::unwrapped(count, self.grid.periods(), elements, kind_of, self.kinds)
     }
 
     /// Below what edges at each point are short; nothing where one stays.

@@ -9,7 +9,7 @@ use voronoi::PeriodicVertex;
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::voxels::copies::Copies;
-use crate::voxels::lattice::Lattice;
+use crate::voxels::labels::Grid;
 use crate::voxels::staircase::{Faces, Staircase};
 use crate::{BoundaryId, Elements};
 
@@ -35,11 +35,11 @@ impl CutFaces {
     }
 
     /// Cuts each square along its shorter diagonal, unless that would fold it and the other one does not.
-    pub(super) fn new(staircase: &Staircase, lattice: &Lattice<'_>, points: &[DVec3]) -> Self {
-        let (kinds, periods) = (&staircase.kinds, lattice.periods());
+    pub(super) fn new(staircase: &Staircase, grid: &Grid, points: &[DVec3]) -> Self {
+        let (kinds, periods) = (&staircase.kinds, grid.periods());
         let corner = |face: usize, corner: usize| PeriodicVertex {
             vertex: staircase.faces.corners(face)[corner],
-            translation: staircase.corner_moved(lattice, face, corner),
+            translation: staircase.corner_moved(grid, face, corner),
         };
         match &staircase.faces {
             Faces::Squares(squares) => {

@@ -34,9 +34,16 @@ impl VoxelLabel {
 /// Labels of voxels on a regular grid that fills a domain; of pixels in the plane.
 #[derive(Debug, Clone)]
 pub struct Voxels {
-    domain: Domain,
-    shape: [usize; 3],
-    labels: Vec<VoxelLabel>,
+    pub(super) grid: Grid,
+    pub(super) labels: Vec<VoxelLabel>,
+}
+
+/// A regular grid of voxels that fills a domain.
+#[derive(Debug, Clone)]
+pub(super) struct Grid {
+    pub(super) domain: Domain,
+    /// Number of voxels along each axis; 1 along z in the plane.
+    pub(super) shape: [usize; 3],
 }
 
 impl Voxels {
@@ -47,24 +54,26 @@ impl Voxels {
     pub fn new(domain: Domain, shape: [usize; 3], labels: Vec<VoxelLabel>) -> Self {
         assert!(domain.is_box(), "voxels fill a box");
         assert_eq!(labels.len(), shape.iter().product::<usize>(), "each voxel has a label");
-        Self { domain, shape, labels }
+        Self { grid: Grid { domain, shape }, labels }
     }
 
     /// The box.
     pub fn domain(&self) -> &Domain {
-        &self.domain
+        &self.grid.domain
     }
 
     /// Number of voxels along each axis.
     pub fn shape(&self) -> [usize; 3] {
-        self.shape
+        self.grid.shape
     }
 
     /// The label of each voxel, x fastest.
     pub fn labels(&self) -> &[VoxelLabel] {
         &self.labels
     }
+}
 
+impl Grid {
     /// Edges of a voxel along each axis; 1 along z in the plane.
     pub(super) fn spacing(&self) -> DVec3 {
         let counts = DVec3::from_array(self.shape.map(|count| count as f64));
@@ -73,5 +82,21 @@ impl Voxels {
             voronoi::Dimension::Two => spacing.with_z(1.0),
             voronoi::Dimension::Three => spacing,
         }
+    }
+
+    /// The box in units of voxels.
+    pub(super) fn in_voxels(&self) -> Domain {
+        let upper = DVec3::from_array(self.shape.map(|count| count as f64));
+        let domain = match self.domain.dimension() {
+            voronoi::Dimension::Two => Domain::rectangle(DVec3::ZERO, upper),
+            voronoi::Dimension::Three => Domain::cuboid(DVec3::ZERO, upper),
+        };
+        domain.expect("there are voxels").with_periods(self.domain.periodic())
+    }
+
+    /// Lengths of the periods in voxels; 0 along other axes.
+    pub(super) fn periods(&self) -> DVec3 {
+        let counts = DVec3::from_array(self.shape.map(|count| count as f64));
+        DVec3::select(self.domain.periodic(), counts, DVec3::ZERO)
     }
 }

@@ -3,9 +3,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{Dimension, Domain};
+use voronoi::Dimension;
 
 use crate::voxels::labels::{OUTSIDE, VoxelLabel, Voxels};
 use crate::voxels::pattern::{Meeting, SplitPoint, copies, octants_around, touching, two_sheets};
@@ -86,19 +85,6 @@ impl<'a> Lattice<'a> {
             sizes,
             changes: BTreeMap::new(),
         })
-    }
-
-    /// The box that the voxels fill, in units of voxels.
-    pub(super) fn domain(&self) -> Domain {
-        let upper = DVec3::from_array(self.shape.map(|count| count as f64));
-        let domain = if self.is_plane { Domain::rectangle } else { Domain::cuboid }(DVec3::ZERO, upper);
-        domain.expect("there are voxels").with_periods(self.periodic.into())
-    }
-
-    /// Lengths of the periods in voxels; 0 along other axes.
-    pub(super) fn periods(&self) -> DVec3 {
-        let length = |axis: usize| if self.periodic[axis] { self.shape[axis] as f64 } else { 0.0 };
-        DVec3::from_array(std::array::from_fn(length))
     }
 
     /// Number of places along an axis.

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use voronoi::{CellId, Translation, Wall};
 
 use crate::mesh::id::id;
+use crate::voxels::labels::Grid;
 use crate::voxels::labels::{OUTSIDE, VoxelLabel};
 use crate::voxels::lattice::{Lattice, MixedPlace, Place};
 use crate::voxels::pattern::quarter;
@@ -123,13 +124,13 @@ impl Staircase {
     }
 
     /// By how many periods a corner of a face is moved where the first side of the face is whole. Corners at the first places may belong behind the last.
-    pub(super) fn corner_moved(&self, lattice: &Lattice<'_>, face: usize, corner: usize) -> Translation {
+    pub(super) fn corner_moved(&self, grid: &Grid, face: usize, corner: usize) -> Translation {
         let Some(moved) = self.moved.get(face) else { return Translation::ZERO };
         let corners = self.faces.corners(face);
         let at = |corner: u32, axis: usize| self.places[corner as usize][axis] as usize;
         let behind = |axis: usize| {
-            let last = lattice.shape[axis] - 1;
-            lattice.periodic[axis]
+            let last = grid.shape[axis] - 1;
+            grid.domain.periodic().test(axis)
                 && at(corners[corner], axis) == 0
                 && corners.iter().any(|other| at(*other, axis) == last)
         };

@@ -6,7 +6,7 @@ use voronoi::PeriodicVertex;
 
 use crate::mesh::id::id;
 use crate::voxels::elements::CutFaces;
-use crate::voxels::labels::Voxels;
+use crate::voxels::labels::Grid;
 use crate::voxels::staircase::Kind;
 
 /// Points of the lattice in units of voxels, and elements between them and their copies.
@@ -34,9 +34,9 @@ impl VoxelSurface {
     }
 
     /// The points in the unit of the domain: exactly on its walls where they were on those of the lattice.
-    pub(super) fn in_domain(&self, voxels: &Voxels) -> Vec<DVec3> {
-        let (lower, upper, spacing) = (voxels.domain().lower(), voxels.domain().upper(), voxels.spacing());
-        let last = UVec3::from_array(voxels.shape().map(id));
+    pub(super) fn in_domain(&self, grid: &Grid) -> Vec<DVec3> {
+        let (lower, upper, spacing) = (grid.domain.lower(), grid.domain.upper(), grid.spacing());
+        let last = UVec3::from_array(grid.shape.map(id));
         let of_point = |(point, place): (&DVec3, &UVec3)| {
             DVec3::select(place.cmpeq(last), upper, lower + *point * spacing)
         };

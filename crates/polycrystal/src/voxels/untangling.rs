@@ -18,8 +18,8 @@ use crate::voxels::volumes::{Restored, VOLUME_TOLERANCE, VolumeSearch};
 pub(super) struct Untangling<'a> {
     pub(super) graph: &'a Graph,
     pub(super) boxes: &'a Boxes<'a>,
-    /// Where points start, as displacements from the middles of their boxes, and cross nowhere.
-    pub(super) starts: &'a [Vec3],
+    /// The points that do not start in the middles of their boxes, and by how much, so that nothing crosses.
+    pub(super) apart: &'a [(u32, Vec3)],
     pub(super) search: &'a VolumeSearch<'a>,
     pub(super) tuning: &'a VoxelTuning,
 }
@@ -96,8 +96,8 @@ impl Untangling<'_> {
 
     /// Where points start, moved so that grains have their volumes. Without that, grains whose points are all held never got them.
     fn home(&self) -> Vec<DVec3> {
-        let start = |(point, start): (usize, &Vec3)| self.boxes.middle(point) + start.as_dvec3();
-        let mut home: Vec<DVec3> = self.starts.iter().enumerate().map(start).collect();
+        let mut home: Vec<DVec3> = self.boxes.places.iter().map(|place| place.as_dvec3()).collect();
+        self.apart.iter().for_each(|(point, start)| home[*point as usize] += start.as_dvec3());
         let free = vec![false; home.len()];
         self.search.restore(&mut home, self.boxes, &free);
         home

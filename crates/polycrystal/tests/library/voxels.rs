@@ -27,7 +27,7 @@ fn voxels(spacing: DVec3, shape: [usize; 3], label: impl Fn([usize; 3]) -> Optio
 }
 
 fn smoothed(voxels: &Voxels) -> SmoothedVoxels {
-    smooth_voxels(voxels, VoxelOptions::ALL_POINTS, |_, _| ()).expect("a network")
+    smooth_voxels(voxels.clone(), VoxelOptions::ALL_POINTS, |_, _| ()).expect("a network")
 }
 
 /// The share of the full angle that a grain's elements are seen under from a point: 1 inside, 0 outside.
@@ -214,8 +214,9 @@ fn checkerboard_is_parted() {
 
 #[test]
 fn labels_without_grains_or_with_gaps_are_refused() {
-    let smooth =
-        |map: &Voxels| smooth_voxels(map, VoxelOptions::ALL_POINTS, |_, _| ()).expect_err("no network");
+    let smooth = |map: &Voxels| {
+        smooth_voxels(map.clone(), VoxelOptions::ALL_POINTS, |_, _| ()).expect_err("no network")
+    };
     let empty = voxels(DVec3::ONE, [3, 3, 3], |_| None);
     assert!(matches!(smooth(&empty), NetworkError::NoGrain));
     for largest in [2, u32::MAX - 1] {
@@ -244,7 +245,7 @@ fn units_and_threads_change_nothing() {
 /// A network without the edges that are shorter than so many voxels.
 fn decimated(voxels: &Voxels, shortest_edge: f64) -> Result<SmoothedVoxels, NetworkError> {
     let options = VoxelOptions { shortest_edge, ..VoxelOptions::ALL_POINTS };
-    smooth_voxels(voxels, options, |_, _| ())
+    smooth_voxels(voxels.clone(), options, |_, _| ())
 }
 
 /// Balls in a ball's place: large grains beside small ones and a pore. Volumes hold exactly, and of large boundaries a small part of the elements is left.
@@ -302,7 +303,7 @@ fn points_around_crossings_stay() {
         let mut seed = || DVec3::new(fraction(), fraction(), fraction()) * 24.0;
         let seeds: Vec<DVec3> = (0..60).map(|_| seed()).collect();
         let map = nearest_of(&seeds, [24, 24, 24]);
-        let few = smooth_voxels_tuned(&map, options, &tuning, |_, _| ()).expect("a network");
+        let few = smooth_voxels_tuned(map.clone(), options, &tuning, |_, _| ()).expect("a network");
         let all = smoothed(&map);
         check_surface(&few);
         assert!(4 * few.points.len() < all.points.len(), "{} of {}", few.points.len(), all.points.len());
@@ -332,7 +333,7 @@ proptest! {
             .collect();
         prop_assume!(!known.is_empty());
         let map = voxels(DVec3::new(1.0, 2.0, 0.5), shape, |[x, y, z]| labels[(z * height + y) * width + x]);
-        match smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()) {
+        match smooth_voxels(map.clone(), VoxelOptions::ALL_POINTS, |_, _| ()) {
             Ok(smoothed) => check(&map, &smoothed),
             Err(NetworkError::VoxelsTouch { .. } | NetworkError::Invalid(_)) => (),
             Err(other) => prop_assert!(false, "{other}"),
@@ -358,7 +359,7 @@ proptest! {
             known.entry(label([index % width, index / width % height, index / width / height])).or_insert(count);
         }
         let map = voxels(DVec3::ONE, shape, |voxel| Some(known[&label(voxel)]));
-        match (smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()), decimated(&map, shortest_edge)) {
+        match (smooth_voxels(map.clone(), VoxelOptions::ALL_POINTS, |_, _| ()), decimated(&map, shortest_edge)) {
             (Ok(whole), Ok(found)) => {
                 check_surface(&found);
                 prop_assert!(found.points.len() <= whole.points.len());
@@ -549,7 +550,7 @@ fn maps_that_cannot_repeat_are_refused() {
     let refused = |shape, label: &dyn Fn([usize; 3]) -> Option<u32>| {
         let map = voxels(DVec3::ONE, shape, label);
         let map = Voxels::new(map.domain().clone().with_periods(periods), shape, map.labels().to_vec());
-        smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()).expect_err("no whole grains")
+        smooth_voxels(map.clone(), VoxelOptions::ALL_POINTS, |_, _| ()).expect_err("no whole grains")
     };
     for depth in [1, 5] {
         let layers = refused([6, 6, depth], &|[x, _, _]| Some(u32::from(x > 2)));
@@ -574,7 +575,7 @@ proptest! {
         let mut axes = BVec3::from_array(axes);
         axes.z &= shape[2] > 1;
         let map = repeating(&seeds, shape, axes, [0; 3]);
-        match smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()) {
+        match smooth_voxels(map.clone(), VoxelOptions::ALL_POINTS, |_, _| ()) {
             Ok(found) if found.relabelled == 0 => {
                 check_repeating(&map, &found);
                 check_repeating_volumes(&map, &decimated(&map, 1.6).expect("a network"));
