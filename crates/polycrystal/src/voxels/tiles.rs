@@ -31,10 +31,10 @@ const SHARED: u32 = u32::MAX - 1;
 impl Tiles<'_> {
     /// As [`coarsened`](crate::network::coarsening::coarsened) with other choices near the borders of tiles; the number of threads decides nothing.
     ///
-    /// Points at borders stay at first. Then tiles begin half an edge further up, and last, in one tile, come the points that stayed twice.
+    /// Points at borders stay at first. Then tiles begin half an edge further up, and a quarter. Last, in one tile and by one thread, come the points that stayed each time.
     pub(super) fn coarsen(&self, left: &mut [Corners]) {
         let mut marked = vec![true; self.points.len()];
-        for (edge, begin) in [(self.edge, 0.0), (self.edge, 0.5), (f64::INFINITY, 0.0)] {
+        for (edge, begin) in [(self.edge, 0.0), (self.edge, 0.5), (self.edge, 0.25), (f64::INFINITY, 0.0)] {
             self.coarsen_each(left, &mut marked, edge, begin);
         }
     }

@@ -37,12 +37,14 @@ struct Untangled {
 impl Untangling<'_> {
     /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
     ///
-    /// Folds stay where grains are one voxel thick: a plate has a rim.
+    /// Folds stay where grains are one voxel thick: a plate has a rim. Others hardly move when points around a place do, so crossings are looked for there alone, and everywhere
+    /// only at the start and in the end.
     pub(super) fn untangle(&self, points: Vec<DVec3>, restored: Restored) -> Vec<DVec3> {
         let neighbors = Neighbors::new(self.search);
         let home = OnceCell::new();
         let free = vec![false; points.len()];
-        let mut best = self.without_crossings(points, free, restored, &neighbors, &home);
+        let crossings = neighbors.crossings(&points);
+        let mut best = self.without_crossings(points, free, restored, crossings, &neighbors, &home);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
             let is_held = self.smooth_folds(&mut points, &best.folds, &neighbors);
@@ -50,7 +52,10 @@ impl Untangling<'_> {
             if restored.error > VOLUME_TOLERANCE {
                 break;
             }
-            let tried = self.without_crossings(points, is_held, restored, &neighbors, &home);
+            let moved: Vec<u32> =
+                (0u32..).zip(&is_held).filter(|(_, is)| **is).map(|(point, _)| point).collect();
+            let crossings = neighbors.crossings_at(&points, &moved, self.boxes.places);
+            let tried = self.without_crossings(points, is_held, restored, crossings, &neighbors, &home);
             if tried.volume_error > VOLUME_TOLERANCE
                 || tried.crossings > best.crossings
                 || tried.folds.len() >= best.folds.len()
@@ -58,6 +63,15 @@ impl Untangling<'_> {
                 break;
             }
             best = tried;
+        }
+        for _ in 0..self.tuning.crossing_rounds {
+            let crossings = neighbors.crossings(&best.points);
+            if crossings.is_empty() {
+                break;
+            }
+            let Untangled { points, .. } = best;
+            let free = vec![false; points.len()];
+            best = self.without_crossings(points, free, Restored::default(), crossings, &neighbors, &home);
         }
         best.points
     }
@@ -69,27 +83,30 @@ impl Untangling<'_> {
         mut points: Vec<DVec3>,
         mut is_held: Vec<bool>,
         mut restored: Restored,
+        mut crossings: Vec<[u32; 2]>,
         neighbors: &Neighbors<'_>,
         home: &OnceCell<Vec<DVec3>>,
     ) -> Untangled {
         for round in 0.. {
-            let crossings = neighbors.crossings(&points);
             let is_done = crossings.is_empty() && restored.stuck.is_empty();
             if is_done || round == self.tuning.crossing_rounds {
                 let folds = neighbors.folds(&points);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error: restored.error };
             }
             let home = home.get_or_init(|| self.home());
-            for point in self.around(&crossings, round / self.tuning.rounds_of_ring) {
-                let point = point as usize;
+            let mut moved = self.around(&crossings, round / self.tuning.rounds_of_ring);
+            for point in &moved {
+                let point = *point as usize;
                 is_held[point] = true;
                 points[point] = points[point].midpoint(home[point]);
             }
             for point in self.search.slopes.points_of(&restored.stuck) {
                 is_held[point as usize] = true;
                 points[point as usize] = home[point as usize];
+                moved.push(point);
             }
             restored = self.search.restore(&mut points, self.boxes, &is_held);
+            crossings = neighbors.crossings_at(&points, &moved, self.boxes.places);
         }
         unreachable!("rounds end")
     }

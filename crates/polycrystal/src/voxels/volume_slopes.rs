@@ -16,7 +16,7 @@ use crate::{Elements, Side, Surface};
 pub(super) struct VolumeSlopes<'a> {
     pub(super) cut: &'a CutFaces,
     /// The sides of each kind of element.
-    sides: &'a [[Side; 2]],
+    pub(super) sides: &'a [[Side; 2]],
     at_points: Grouped<u32>,
     /// Of each point: the kind of the elements at it, if all of them have it and the point itself for a corner.
     kind_at: Vec<u32>,

@@ -35,6 +35,7 @@ pub(super) struct Wanted<'a> {
 }
 
 /// What a search for volumes found.
+#[derive(Default)]
 pub(super) struct Restored {
     /// The largest error that is left, as a share of a volume.
     pub(super) error: f64,
