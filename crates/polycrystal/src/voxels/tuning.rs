@@ -35,7 +35,8 @@ pub struct VoxelTuning {
     /// How far a point that is left may move from its place along each axis, so that grains have their volumes again: chords of curved boundaries take some. With `within`,
     /// edges of three voxels left balls of twelve voxels without theirs.
     pub within_when_decimated: f64,
-    /// Edge of the cubes in which edges collapse side by side, in units of the shortest edge asked for: many for all threads, each small enough to stay in the cache, and most of each away from its sides.
+    /// Edge of the cubes in which edges collapse side by side, in units of the shortest edge asked for: many for all threads, each small enough to stay in the cache, and most of each away from its
+    /// sides. With edges of 2, cubes of 20, 40, 60 and 100 voxels took 6.0, 4.8, 5.0 and 6.9 s for 200 voxels an edge.
     pub tile: f64,
     /// Rounds of decimation, each of which leaves the points around faults of the one before; then nothing is decimated.
     pub decimations: usize,
