@@ -397,7 +397,7 @@ impl Coarsening<'_> {
     }
 
     /// Whether the points beside both ends of an edge are across from it in its triangles alone, so many: then an end inside a boundary may go to the other, and surfaces
-    /// stay as they are (Dey and others, Topology preserving edge contraction, 1999).
+    /// that touch themselves nowhere stay as they are (Dey and others, Topology preserving edge contraction, 1999).
     fn is_link_of_edge(&self, [from, to]: [PeriodicVertex; 2], triangles: usize) -> bool {
         let there = self.beside(to.vertex);
         let seen = |other: &PeriodicVertex| other.moved(Translation::ZERO - to.translation);

@@ -44,9 +44,7 @@ impl<'a> Neighbors<'a> {
         let points = self.search.slopes.cut.copies.with_copies(points);
         let elements = self.search.slopes.cut.elements();
         let at_points = at.iter().flat_map(|point| self.search.slopes.at_point(*point));
-        let mut pairs: Vec<[u32; 2]> = at_points.flat_map(|element| self.beside(*element)).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let mut pairs = sorted(at_points.flat_map(|element| self.beside(*element)).collect());
         pairs.retain(|pair| is_folded(pair.map(|element| elements.normal(&points, element)), 0.0));
         pairs
     }

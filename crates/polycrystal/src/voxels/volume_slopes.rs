@@ -101,8 +101,8 @@ impl<'a> VolumeSlopes<'a> {
         corners.map(|corner| self.cut.copies.original(corner))
     }
 
-    /// Volumes of so many grains and how they grow, by all points but along the axes that are bound. Of points where all elements are of one kind `directions` becomes
-    /// where to they go when its first side is to grow.
+    /// Volumes of so many grains and how they grow, by all points but along the axes that are bound. `directions` becomes, for points where all elements are of one kind, the way
+    /// in which they go when the first side grows.
     pub(super) fn growth(
         &self,
         grain_count: usize,
@@ -230,7 +230,7 @@ impl VolumeSlopes<'_> {
         found.mobility = if area > 0.0 { 1.0 / area } else { 0.0 };
     }
 
-    /// Where to points go by a multiplier for each grain: turns the directions that [`growth`](Self::growth) found into motions.
+    /// Turns the directions that [`growth`](Self::growth) found into motions, by a multiplier for each grain.
     pub(super) fn motions(&self, points: &[DVec3], multipliers: &[f64], directions: &mut [DVec3]) {
         let with_copies = self.cut.copies.with_copies(points);
         let of_side = |side: Side| side.grain().map_or(0.0, |grain| multipliers[grain.index()]);
