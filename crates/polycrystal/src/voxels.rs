@@ -158,7 +158,6 @@ pub fn smooth_voxels_tuned(
     if options.shortest_edge > 0.0 {
         let decimation = Decimation {
             whole: &whole,
-            domain: &grid.in_voxels(),
             grid: &grid,
             kinds: &kinds,
             wanted: &wanted,
@@ -169,7 +168,7 @@ pub fn smooth_voxels_tuned(
         for _ in 0..tuning.decimations {
             match network(&decimation.decimated(&is_held)) {
                 Ok(found) => return Ok(found),
-                Err((NetworkError::Invalid(_), faulty)) => decimation.hold(&mut is_held, faulty),
+                Err((NetworkError::Invalid(_), faulty)) => decimation.hold(&mut is_held, &faulty),
                 Err((other, _)) => return Err(other),
             }
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec3, UVec3};
-use voronoi::{Domain, PeriodicVertex};
+use voronoi::PeriodicVertex;
 
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
@@ -20,13 +20,11 @@ use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tiles::{Corners, Tiles};
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volumes::{VOLUME_TOLERANCE, VolumeSearch, Wanted};
-use crate::{BoundaryId, GrainId, Side, Surface};
+use crate::{BoundaryId, GrainId, Surface};
 
 /// A surface whose short edges are to collapse.
 pub(super) struct Decimation<'a> {
     pub(super) whole: &'a VoxelSurface,
-    /// The box, in units of voxels.
-    pub(super) domain: &'a Domain,
     pub(super) grid: &'a Grid,
     pub(super) kinds: &'a [Kind],
     pub(super) wanted: &'a Wanted<'a>,
@@ -74,6 +72,7 @@ impl Decimation<'_> {
     /// Small grains keep shorter edges.
     pub(super) fn decimated(&self, is_held: &[bool]) -> VoxelSurface {
         let VoxelSurface { points, places, cut } = self.whole;
+        let domain = self.grid.in_voxels();
         // Elements of copies go with their originals.
         let count = cut.kind_of.iter().take_while(|kind| kind.index() < self.kinds.len()).count();
         let kind_of = &cut.kind_of[..count];
@@ -90,7 +89,7 @@ impl Decimation<'_> {
                 let corners = left.iter().flatten().map(|corners| &corners[..]);
                 let limits = self.limits(is_held, corners.zip(sides_of()));
                 let tiles = Tiles {
-                    domain: self.domain,
+                    domain: &domain,
                     points,
                     limits: &limits,
                     kind_of,
@@ -107,7 +106,7 @@ impl Decimation<'_> {
                 let segments: Vec<_> = segments[..count].iter().map(|ends| ends.map(vertex)).collect();
                 let limits = self.limits(is_held, segments.iter().map(|ends| &ends[..]).zip(sides_of()));
                 let sides: Vec<[voronoi::Side; 2]> = sides_of().copied().collect();
-                let left = coarsened_segments(self.domain, points, &limits, &segments, &sides);
+                let left = coarsened_segments(&domain, points, &limits, &segments, &sides);
                 let (kept, segments) = renumbered(points.len(), &left);
                 let mut kind_of = kinds_of(&mut left.iter().map(Option::is_some));
                 let (segments, copies) = self.unwrapped(kept.len(), &segments, &mut kind_of);
@@ -169,7 +168,7 @@ impl Decimation<'_> {
         is_held: &[bool],
         elements: impl Iterator<Item = (&'b [PeriodicVertex], &'b [voronoi::Side; 2])>,
     ) -> Vec<Option<f64>> {
-        let dimension = self.domain.dimension();
+        let dimension = self.grid.domain.dimension();
         let length = |volume: &f64| {
             let of_grain = self.tuning.longest_of_grain * dimension.cube_edge(*volume);
             of_grain.min(self.shortest_edge)
@@ -181,16 +180,9 @@ impl Decimation<'_> {
     }
 
     /// Holds the points of the whole surface around some positions, and those of some grains.
-    pub(super) fn hold(&self, is_held: &mut [bool], Faulty { positions, mut grains }: Faulty) {
-        grains.sort_unstable();
-        let is_faulty = |side: &Side| side.grain().is_some_and(|grain| grains.binary_search(&grain).is_ok());
-        for (element, kind) in (0u32..).zip(&self.whole.cut.kind_of) {
-            if self.wanted.sides[kind.index()].iter().any(is_faulty) {
-                for corner in self.whole.cut.elements().corners(element).iter() {
-                    is_held[self.whole.cut.copies.original(*corner) as usize] = true;
-                }
-            }
-        }
+    pub(super) fn hold(&self, is_held: &mut [bool], Faulty { positions, grains }: &Faulty) {
+        let of_grains = self.whole.cut.points_of_grains(grains, self.wanted.sides);
+        of_grains.for_each(|point| is_held[point as usize] = true);
         let Some(first) = positions.first() else { return };
         let around = |position: u32| Bounds::around([positions[position as usize]]);
         let tree = BoxTree::new((0..id(positions.len())).collect(), around);

@@ -11,7 +11,7 @@ use crate::mesh::id::id;
 use crate::voxels::copies::Copies;
 use crate::voxels::labels::Grid;
 use crate::voxels::staircase::{Faces, Staircase};
-use crate::{BoundaryId, Elements};
+use crate::{BoundaryId, Elements, GrainId, Side};
 
 /// Triangles or segments, and the kind of each. Along periods those around whole grains.
 pub(super) struct CutFaces {
@@ -71,6 +71,19 @@ impl CutFaces {
     /// The points of the lattice at some pairs of elements, some more than once.
     pub(super) fn points_of(&self, pairs: &[[u32; 2]]) -> impl Iterator<Item = u32> {
         let corners = pairs.iter().flatten().flat_map(|element| self.elements().corners(*element).to_vec());
+        corners.map(|corner| self.copies.original(corner))
+    }
+
+    /// The points of the lattice at some grains, some more than once, where the kinds have these sides.
+    pub(super) fn points_of_grains(
+        &self,
+        grains: &[GrainId],
+        sides: &[[Side; 2]],
+    ) -> impl Iterator<Item = u32> {
+        let is_at = |side: &Side| side.grain().is_some_and(|grain| grains.contains(&grain));
+        let is_there: Vec<bool> = sides.iter().map(|sides| sides.iter().any(is_at)).collect();
+        let elements = (0u32..).zip(&self.kind_of).filter(move |(_, kind)| is_there[kind.index()]);
+        let corners = elements.flat_map(|(element, _)| self.elements().corners(element).to_vec());
         corners.map(|corner| self.copies.original(corner))
     }
 

@@ -5,8 +5,7 @@ use rayon::prelude::*;
 use voronoi::{CellId, Translation, Wall};
 
 use crate::mesh::id::id;
-use crate::voxels::labels::Grid;
-use crate::voxels::labels::{OUTSIDE, VoxelLabel};
+use crate::voxels::labels::{Grid, OUTSIDE, VoxelLabel};
 use crate::voxels::lattice::{Lattice, MixedPlace, Place};
 use crate::voxels::pattern::quarter;
 use crate::{GrainId, Side};

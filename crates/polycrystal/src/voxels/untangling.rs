@@ -28,7 +28,6 @@ pub(super) struct Untangling<'a> {
 #[derive(Debug, Clone)]
 struct Untangled {
     points: Vec<DVec3>,
-    folds: Vec<[u32; 2]>,
     crossings: usize,
     /// The largest error of a volume, as a share of it.
     volume_error: f64,
@@ -45,9 +44,10 @@ impl Untangling<'_> {
         let free = vec![false; points.len()];
         let crossings = neighbors.crossings(&points);
         let mut best = self.without_crossings(points, free, restored, crossings, &neighbors, &home);
-        while !best.folds.is_empty() {
+        let mut folds = neighbors.folds(&best.points);
+        while !folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, &best.folds, &neighbors);
+            let is_held = self.smooth_folds(&mut points, &folds, &neighbors);
             let restored = self.search.restore(&mut points, self.boxes, &is_held);
             if restored.error > VOLUME_TOLERANCE {
                 break;
@@ -56,13 +56,14 @@ impl Untangling<'_> {
                 (0u32..).zip(&is_held).filter(|(_, is)| **is).map(|(point, _)| point).collect();
             let crossings = neighbors.crossings_at(&points, &moved, self.boxes.places);
             let tried = self.without_crossings(points, is_held, restored, crossings, &neighbors, &home);
+            let folds_left = neighbors.folds(&tried.points);
             if tried.volume_error > VOLUME_TOLERANCE
                 || tried.crossings > best.crossings
-                || tried.folds.len() >= best.folds.len()
+                || folds_left.len() >= folds.len()
             {
                 break;
             }
-            best = tried;
+            (best, folds) = (tried, folds_left);
         }
         for _ in 0..self.tuning.crossing_rounds {
             let crossings = neighbors.crossings(&best.points);
@@ -90,8 +91,7 @@ impl Untangling<'_> {
         for round in 0.. {
             let is_done = crossings.is_empty() && restored.stuck.is_empty();
             if is_done || round == self.tuning.crossing_rounds {
-                let folds = neighbors.folds(&points);
-                return Untangled { points, folds, crossings: crossings.len(), volume_error: restored.error };
+                return Untangled { points, crossings: crossings.len(), volume_error: restored.error };
             }
             let home = home.get_or_init(|| self.home());
             let mut moved = self.around(&crossings, round / self.tuning.rounds_of_ring);
@@ -100,7 +100,7 @@ impl Untangling<'_> {
                 is_held[point] = true;
                 points[point] = points[point].midpoint(home[point]);
             }
-            for point in self.search.slopes.points_of(&restored.stuck) {
+            for point in self.search.slopes.cut.points_of_grains(&restored.stuck, self.search.slopes.sides) {
                 is_held[point as usize] = true;
                 points[point as usize] = home[point as usize];
                 moved.push(point);

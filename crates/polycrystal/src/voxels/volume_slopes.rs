@@ -92,15 +92,6 @@ impl<'a> VolumeSlopes<'a> {
         self.at_points.of(point as usize)
     }
 
-    /// The points of the lattice at some grains, some more than once.
-    pub(super) fn points_of<'b>(&'b self, grains: &'b [u32]) -> impl Iterator<Item = u32> + 'b {
-        let is_at = |side: &Side| side.grain().is_some_and(|grain| grains.contains(&grain.0));
-        let kinds: Vec<bool> = self.sides.iter().map(|sides| sides.iter().any(is_at)).collect();
-        let elements = (0u32..).zip(&self.cut.kind_of).filter(move |(_, kind)| kinds[kind.index()]);
-        let corners = elements.flat_map(|(element, _)| self.cut.elements().corners(element).to_vec());
-        corners.map(|corner| self.cut.copies.original(corner))
-    }
-
     /// Volumes of so many grains and how they grow, by all points but along the axes that are bound. `directions` becomes, for points where all elements are of one kind, the way
     /// in which they go when the first side grows.
     pub(super) fn growth(

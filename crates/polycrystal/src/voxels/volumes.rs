@@ -6,13 +6,14 @@ use cancellation::check_cancelled;
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
-use crate::Side;
 use crate::mesh::id::id;
+use crate::mesh::volume::largest_relative_error;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::voxels::bending::Boxes;
 use crate::voxels::elements::CutFaces;
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volume_slopes::VolumeSlopes;
+use crate::{GrainId, Side};
 
 /// Residual of the multipliers, as a share of what volumes lack.
 const SOLVED: f64 = 1e-6;
@@ -40,7 +41,7 @@ pub(super) struct Restored {
     /// The largest error that is left, as a share of a volume.
     pub(super) error: f64,
     /// Grains that cannot have their volumes, as too many of their points stay.
-    pub(super) stuck: Vec<u32>,
+    pub(super) stuck: Vec<GrainId>,
 }
 
 /// Newton's search for points.
@@ -76,8 +77,7 @@ impl<'a> VolumeSearch<'a> {
             let growth = self.slopes.growth(volumes.len(), points, is_bound, &mut motions);
             let mut missing: Vec<f64> =
                 volumes.iter().zip(growth.volumes).map(|(wanted, is)| wanted - is).collect();
-            restored.error =
-                missing.iter().zip(volumes).map(|(lack, wanted)| (lack / wanted).abs()).fold(0.0, f64::max);
+            restored.error = largest_relative_error(&missing, volumes).1;
             restored.stuck.clear();
             if restored.error <= TOLERANCE {
                 break;
@@ -100,7 +100,7 @@ impl<'a> VolumeSearch<'a> {
 
 /// Takes from what grains lack that which no motion gives them: grains that exchange volumes with each other alone keep the sum of these. Returns the grains of such
 /// groups that lack something together, but for a group of most grains, which has what the others lack.
-fn give_up_sums(matrix: &[BTreeMap<u32, f64>], missing: &mut [f64], volumes: &[f64]) -> Vec<u32> {
+fn give_up_sums(matrix: &[BTreeMap<u32, f64>], missing: &mut [f64], volumes: &[f64]) -> Vec<GrainId> {
     let mut is_known = vec![false; missing.len()];
     let mut groups = Vec::new();
     for first in 0..missing.len() {
@@ -132,7 +132,7 @@ fn give_up_sums(matrix: &[BTreeMap<u32, f64>], missing: &mut [f64], volumes: &[f
         group.iter().for_each(|grain| missing[*grain as usize] -= rest);
         let lacks = |grain: &u32| rest.abs() > VOLUME_TOLERANCE * volumes[*grain as usize];
         if 2 * group.len() <= missing.len() && group.iter().any(lacks) {
-            stuck.extend(group);
+            stuck.extend(group.into_iter().map(GrainId));
         }
     }
     stuck
