@@ -63,8 +63,8 @@ fn whole_grains_are_beside_a_map_that_repeats() {
     for name in ["exact.vtp", "decimated.vtp"] {
         let found = agreement(&workplace, &format!("{name} --labels map.vti --periodic x,y,z"));
         let differing = number(&found, "differing_voxels");
-        // Chords cut curved boundaries, by the square of their length: edges of 1.6 voxels, the default, take 302 of 32 768 voxels.
-        assert!(if name == "exact.vtp" { differing == 0.0 } else { differing < 315.0 }, "{differing}");
+        // Chords cut curved boundaries, by the square of their length: the default takes 317 of 32 768 voxels.
+        assert!(if name == "exact.vtp" { differing == 0.0 } else { differing < 330.0 }, "{differing}");
         assert!(number(&found, "largest_volume_error") < 1e-9, "{found}");
         let [mean, largest] = ["mean_distance", "largest_distance"].map(|key| number(&found, key));
         assert!(0.05 < mean && mean < 0.3 && largest < 1.2, "{mean}, {largest}");

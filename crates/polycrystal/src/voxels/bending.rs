@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::mesh::id::id;
 use crate::voxels::copies::across;
-use crate::voxels::graph::{Graph, few};
+use crate::voxels::graph::{Graph, Part, few};
 use crate::voxels::labels::Grid;
 use crate::voxels::tuning::VoxelTuning;
 
@@ -67,12 +67,11 @@ struct Row {
     fixed: u8,
     /// How far the middle of its box is from the mean of the middles of those that it follows, times their number: whole edges.
     bend_of_middle: I8Vec3,
-    /// How much its bending counts beside that of others.
-    weight: f32,
+    part: Part,
 }
 
 impl Row {
-    fn new(graph: &Graph, boxes: &Boxes<'_>, point: usize, of_lines: f32) -> Self {
+    fn new(graph: &Graph, boxes: &Boxes<'_>, point: usize) -> Self {
         let followed = graph.followed(point);
         let middle = boxes.middle(point);
         let from = |other: &u32| across(boxes.periods, boxes.middle(*other as usize), middle);
@@ -84,7 +83,7 @@ impl Row {
             followers: [start, end - start],
             fixed,
             bend_of_middle: followed.iter().map(from).sum::<DVec3>().as_i8vec3(),
-            weight: if graph.is_on_line(point) { of_lines } else { 1.0 },
+            part: graph.part(point),
         }
     }
 
@@ -103,9 +102,32 @@ impl Row {
     }
 }
 
+/// How much a point counts in the sum that is to be least.
+struct Weights {
+    /// Its distance from where it starts.
+    pull: f32,
+    /// Its distance from the mean of those that it follows.
+    bending: f32,
+}
+
+impl Weights {
+    fn new(part: Part, tuning: &VoxelTuning) -> Self {
+        match part {
+            Part::Boundary => Self { pull: 1.0, bending: tuning.bending },
+            Part::BesideLine => {
+                Self { pull: tuning.pull_beside_lines, bending: tuning.bending_beside_lines * tuning.bending }
+            }
+            Part::Line => Self { pull: 1.0, bending: tuning.bending_of_lines * tuning.bending },
+            Part::Node => Self { pull: 1.0, bending: 0.0 },
+        }
+    }
+}
+
 /// The points x for which this is least, each within its box, in units of the edge of a voxel:
 ///
-/// sum of |x - where it starts|^2 + `bending` (sum inside boundaries of |x - mean of its neighbours|^2 + `bending_of_lines` sum along lines of |x - mean of both neighbours along the line|^2).
+/// sum of `pull` |x - where it starts|^2 + sum of `bending` |x - mean of those that it follows|^2,
+///
+/// where points of lines follow both neighbours along the line, and those inside boundaries all their neighbours.
 ///
 /// `starts` are displacements from the middles of the boxes. `progress` is told how many steps of how many are done.
 ///
@@ -119,21 +141,24 @@ pub(super) fn least_bending(
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> Vec<DVec3> {
     let count = graph.count();
-    let row = |point: usize| Row::new(graph, boxes, point, tuning.bending_of_lines);
+    let row = |point: usize| Row::new(graph, boxes, point);
     let rows: Vec<Row> = (0..count).into_par_iter().map(row).collect();
     let neighbors = graph.neighbors();
+    let weights =
+        [Part::Boundary, Part::BesideLine, Part::Line, Part::Node].map(|part| Weights::new(part, tuning));
+    let weights_of = |row: &Row| &weights[row.part as usize];
     let step = |row: &Row| {
         // Rows of the matrix of means have the sum 2 at most; so this bounds the sum of a row of its square.
-        let own = if row.followed == 0 { 0.0 } else { row.weight };
         let of_follower = |other: &u32| {
-            let other = rows[*other as usize];
-            other.share() * other.weight
+            let other = &rows[*other as usize];
+            other.share() * weights_of(other).bending
         };
         let sum: f32 = row.followers(neighbors).iter().map(of_follower).sum();
-        1.0 / (1.0 + tuning.bending * 2.0 * (own + sum))
+        let Weights { pull, bending } = weights_of(row);
+        1.0 / (pull + 2.0 * (bending + sum))
     };
     let steps: Vec<f32> = rows.par_iter().map(step).collect();
-    // The distances from the starts alone curve the sum by 1. So curvatures, times steps, are between the least step and 1.
+    // The distances from the starts alone curve the sum by 1 or more. So curvatures, times steps, are between the least step and 1.
     let least = tuning.least_curvature * steps.iter().copied().fold(1.0, f32::min);
     let mut acceleration = Acceleration::new(least.min(0.5));
     // Zero along the axes that a point stays on.
@@ -152,14 +177,14 @@ pub(super) fn least_bending(
         bends.par_iter_mut().zip(&rows).zip(&points).for_each(|((bend, row), at)| {
             let sum: Vec3A = row.followed(neighbors).iter().map(|other| points[*other as usize]).sum();
             let all = row.bend_of_middle.as_vec3a() + *at * f32::from(row.followed) - sum;
-            *bend = all * (row.share() * row.share() * row.weight);
+            *bend = all * (row.share() * row.share() * weights_of(row).bending);
         });
         let [of_last, of_slope] = acceleration.next();
         let moving = points.par_iter_mut().zip(&mut moves).zip(&bends).zip(&rows).zip(&steps).zip(starts);
         moving.for_each(|(((((at, last), bend), row), step), start)| {
             let from: Vec3A = row.followers(neighbors).iter().map(|other| bends[*other as usize]).sum();
             let own = *bend * f32::from(row.followed);
-            let slope = *at - Vec3A::from(*start) + tuning.bending * (own - from);
+            let slope = (*at - Vec3A::from(*start)) * weights_of(row).pull + own - from;
             let way = ways[usize::from(row.fixed)];
             let next = (*at + *last * of_last - slope * (*step * of_slope)).clamp(-way, way);
             *last = next - *at;

@@ -25,8 +25,10 @@ const POINTS_AT_ONCE: usize = 1 << 14;
 
 /// What a point is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
+pub(super) enum Part {
     Boundary,
+    /// A boundary, with a neighbour on a line.
+    BesideLine,
     Line,
     /// Where lines end or meet.
     Node,
@@ -97,15 +99,19 @@ impl Graph {
     /// Those whose mean a point is to be: of a point of a line the two along it, of a point inside a boundary all; none of others.
     pub(super) fn followed(&self, point: usize) -> &[u32] {
         match part(self.along_lines[point]) {
-            Part::Boundary => self.beside(point),
+            Part::Boundary | Part::BesideLine => self.beside(point),
             Part::Line => &self.beside(point)[..2],
             Part::Node => &[],
         }
     }
 
-    /// Whether a point follows those along a line.
-    pub(super) fn is_on_line(&self, point: usize) -> bool {
-        part(self.along_lines[point]) == Part::Line
+    /// What a point is part of.
+    pub(super) fn part(&self, point: usize) -> Part {
+        let is_on_line = |other: &u32| part(self.along_lines[*other as usize]) == Part::Line;
+        match part(self.along_lines[point]) {
+            Part::Boundary if self.beside(point).iter().any(is_on_line) => Part::BesideLine,
+            part => part,
+        }
     }
 
     /// The neighbours of all points, one point after the other.

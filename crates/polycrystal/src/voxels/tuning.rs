@@ -5,14 +5,19 @@
 pub struct VoxelTuning {
     /// How far a point may move from the middle of its eight voxels, along each axis: below 0.5 no voxel changes its grain.
     pub within: f64,
-    /// How much bending counts against the distance from the staircase. On two maps of 64^3 voxels with 50 grains, at equilibrium and flat, 300 and 600 left the same distance from the
-    /// true boundaries (0.055 and 0.051 voxel), and normals away from lines off by 1.79 and 1.47, and by 1.68 and 1.35 degrees; 1000 took twice the steps for 0.05 degrees less.
+    /// How much bending counts against the distance from the staircase. On two maps of 64^3 voxels with 50 grains, at equilibrium and flat, 300 and 600 everywhere left the same distance from
+    /// the true boundaries (0.055 and 0.051 voxel), and normals away from lines off by 1.79 and 1.47, and by 1.68 and 1.35 degrees; 1000 took twice the steps for 0.05 degrees less.
     pub bending: f32,
-    /// How much the bending of lines counts beside that of boundaries. On the first of these maps, 1, 2 and 4 left normals off by 3.14, 3.04 and 3.05 degrees, lines by 0.267, 0.262 and
-    /// 0.259 voxel, and the means of angles along lines by 7.9, 7.7 and 7.7 degrees; on the second one, these means by 7.7, 8.1 and 8.4. On 100^3 voxels with 204 grains at equilibrium, 2, 2.2 and 2.4 left
-    /// normals off by 3.201, 3.197 and 3.195 degrees, away from lines by 1.692, 1.697 and 1.700.
+    /// How much bending counts beside lines, as a share of that elsewhere. On the first of these maps, shares of 1, 0.5 and 0.2 of a bending of 600 left boundaries off by 0.053, 0.052 and
+    /// 0.051 voxel, normals away from lines by 1.69, 1.64 and 1.62 degrees, and the means of angles along lines by 7.7, 7.7 and 7.9.
+    pub bending_beside_lines: f32,
+    /// How much the distance from the staircase counts beside lines: the means that points follow there end at lines. With three quarters of a bending of 750, on 100^3 voxels with 204 grains
+    /// at equilibrium, 1 and 7.5 left boundaries off by 0.053 and 0.052 voxel, normals by 3.18 and 3.19 degrees, and the means of angles along lines by 7.7 and 7.4.
+    pub pull_beside_lines: f32,
+    /// How much the bending of lines counts, in units of that of boundaries. On the first of these maps, 1, 2 and 4 with a bending of 600 left normals off by 3.14, 3.04 and 3.05 degrees, lines
+    /// by 0.267, 0.262 and 0.259 voxel, and the means of angles along lines by 7.9, 7.7 and 7.7 degrees; on the second one, these means by 7.7, 8.1 and 8.4.
     pub bending_of_lines: f32,
-    /// Steps of the search for least bending. On the first map, 40, 50 and 64 left normals away from lines off by 1.80, 1.74 and 1.69 degrees; 120 with constant momentum instead 1.68.
+    /// Steps of the search for least bending. On the first map, 40, 50 and 64 left normals away from lines off by 1.80, 1.74 and 1.69 degrees; 120 with constant momentum instead 1.68. With the weights beside lines, 64 and 72 left them off by 1.705 and 1.698.
     pub bending_steps: usize,
     /// The least curvature that the search reckons with, in units of the true one. With 10, as many steps come nearer to the least sum than with 1, 4 or 24: what is less curved is smooth
     /// from the start.
@@ -49,9 +54,11 @@ impl Default for VoxelTuning {
     fn default() -> Self {
         Self {
             within: 0.49,
-            bending: 600.0,
-            bending_of_lines: 2.2,
-            bending_steps: 64,
+            bending: 750.0,
+            bending_beside_lines: 0.75,
+            pull_beside_lines: 7.5,
+            bending_of_lines: 1.6,
+            bending_steps: 72,
             least_curvature: 10.0,
             apart: 0.3,
             crossing_rounds: 12,
