@@ -7,6 +7,7 @@ use glam::{BVec3, BVec3A, DVec3, I8Vec3, UVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use crate::mesh::id::id;
+use crate::solver::chebyshev::Chebyshev;
 use crate::voxels::copies::across;
 use crate::voxels::graph::{Graph, Part, few};
 use crate::voxels::labels::Grid;
@@ -160,7 +161,7 @@ pub(super) fn least_bending(
     let steps: Vec<f32> = rows.par_iter().map(step).collect();
     // The distances from the starts alone curve the sum by 1 or more. So curvatures, times steps, are between the least step and 1.
     let least = tuning.least_curvature * steps.iter().copied().fold(1.0, f32::min);
-    let mut acceleration = Acceleration::new(least.min(0.5));
+    let mut acceleration = Chebyshev::new(least.min(0.5));
     // Zero along the axes that a point stays on.
     let within = DVec3::splat(boxes.within).as_vec3a();
     let ways: [Vec3A; 8] = std::array::from_fn(|fixed| {
@@ -196,29 +197,4 @@ pub(super) fn least_bending(
         boxes.nearest(point, boxes.middle(point) + displacement.as_dvec3())
     };
     points.par_iter().enumerate().map(place).collect()
-}
-
-/// Chebyshev's factors, where curvatures are between a least one and 1.
-struct Acceleration {
-    least: f32,
-    /// Nothing before the first step.
-    last: Option<f32>,
-}
-
-impl Acceleration {
-    fn new(least: f32) -> Self {
-        Self { least, last: None }
-    }
-
-    /// How much of the last motion, and of the slope, a step takes.
-    fn next(&mut self) -> [f32; 2] {
-        let (middle, half) = ((1.0 + self.least) / 2.0, (1.0 - self.least) / 2.0);
-        let Some(last) = self.last else {
-            self.last = Some(half / middle);
-            return [0.0, 1.0 / middle];
-        };
-        let next = 1.0 / (2.0 * middle / half - last);
-        self.last = Some(next);
-        [next * last, 2.0 * next / half]
-    }
 }
