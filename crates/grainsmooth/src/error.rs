@@ -358,6 +358,9 @@ pub enum Error {
     /// The same, with all that is known of it.
     #[error("{0}")]
     Failed(Box<Failure>),
+    /// Short lines were to become points, and with elements of that size only a network that keeps them is valid.
+    #[error("{0}; with --small-features keep, which leaves short lines as they are, it works")]
+    WorksWithShortLines(NetworkError),
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]
     MeshFile {
