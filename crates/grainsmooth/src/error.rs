@@ -346,10 +346,13 @@ pub enum Error {
     },
     /// Gmsh could not fill all grains.
     #[error(
-        "{cause}; give elements of another size with --elements-per-grain, or look at the surfaces alone with --grains-dir grains"
+        "Gmsh cannot fill {}: {cause}; give elements of another size with --elements-per-grain, or write each surface alone: the same command with --grains-dir surfaces in place of -o and of options of volume meshes",
+        grains_in_words(grains)
     )]
     NotFilled {
-        /// What it said, or which grains lack tetrahedra.
+        /// The grains, by number.
+        grains: Vec<u32>,
+        /// What it said of the first.
         cause: String,
     },
     /// The network cannot be made, relaxed, or is invalid.
