@@ -11,6 +11,7 @@ mod config_files;
 mod control_meshes;
 mod domains;
 mod elements;
+mod filling;
 mod front;
 mod given_networks;
 mod good_runs;

@@ -148,6 +148,17 @@ fn what_cannot_be_remeshed_is_refused() {
 }
 
 #[test]
+fn short_lines_are_kept_where_they_cannot_become_points() {
+    let workplace = Workplace::new();
+    let network = "--dim 2 --seeds 30 --rng-seed 5 --elements-per-grain 1 -o a.vtp";
+    let invalid = "with elements of that size the network is invalid:";
+    let remedy = "give another size, or more levels of subdivision; with --small-features keep, which leaves short lines as they are, it works";
+    let message = format!("{invalid} ... {remedy}");
+    workplace.refuses(&format!("{network} --small-features merge"), FAILED, &message);
+    workplace.run(&format!("{network} --small-features keep"));
+}
+
+#[test]
 fn equations_are_for_networks_that_repeat() {
     let workplace = Workplace::new();
     if grainsmooth::check_gmsh().is_err() {

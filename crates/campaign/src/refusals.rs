@@ -8,8 +8,8 @@ type Kind = (&'static str, &'static [&'static str]);
 
 /// The refusals among the errors of `grainsmooth::Error`, `voronoi::VoronoiError` and `polycrystal::NetworkError`.
 ///
-/// Not here, so failed results: `BoundaryTooSmall`, `CutCrosses`, `CutInvalid`, `VolumeNotRestored`, `Folded` and
-/// `Invalid`, which are the program's own limits, and `WriteOutput`.
+/// Not here, so failed results: `BoundaryTooSmall`, `CutCrosses`, `CutInvalid`, `VolumeNotRestored`, `Folded`,
+/// `Invalid`, `RemeshInvalid` and `WorksWithShortLines`, which are the program's own limits, and `WriteOutput`.
 pub const REFUSALS: &[Kind] = &[
     // Paths and formats.
     ("UnknownExtension", &["unknown extension; name the file"]),

@@ -346,10 +346,13 @@ pub enum Error {
     },
     /// Gmsh could not fill all grains.
     #[error(
-        "{cause}; give elements of another size with --elements-per-grain, or look at the surfaces alone with --grains-dir grains"
+        "Gmsh cannot fill {}: {cause}; give elements of another size with --elements-per-grain, or write each surface alone: the same command with --grains-dir surfaces in place of -o and of options of volume meshes",
+        grains_in_words(grains)
     )]
     NotFilled {
-        /// What it said, or which grains lack tetrahedra.
+        /// The grains, by number.
+        grains: Vec<u32>,
+        /// What it said of the first.
         cause: String,
     },
     /// The network cannot be made, relaxed, or is invalid.
@@ -358,6 +361,9 @@ pub enum Error {
     /// The same, with all that is known of it.
     #[error("{0}")]
     Failed(Box<Failure>),
+    /// Short lines were to become points, and with elements of that size only a network that keeps them is valid.
+    #[error("{0}; with --small-features keep, which leaves short lines as they are, it works")]
+    WorksWithShortLines(NetworkError),
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]
     MeshFile {

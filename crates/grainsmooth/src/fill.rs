@@ -3,6 +3,7 @@
 mod batch;
 mod msh;
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -98,12 +99,39 @@ impl Polycrystal {
         let connected = ConnectedParts::of(&surface).surface;
         let grain_count = self.network.grain_count();
         let batches = Batch::all(&connected, grain_count, limit);
-        let filled: Vec<Result<VolumeMesh, Error>> =
-            batches.par_iter().map(|batch| filled(batch, grain_count)).collect();
-        // The first that fails is the same in every run.
-        let filled = filled.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let numbers = batches.iter().map(Batch::numbers);
-        Ok(joined(&self.points, numbers.zip(filled)))
+        let tried = batches.into_par_iter().flat_map_iter(|batch| filled_or_pieces(batch, grain_count));
+        let tried: Vec<Result<FilledBatch<'_>, Error>> = tried.collect();
+        let (mut all_filled, mut causes) = (Vec::new(), BTreeMap::new());
+        for result in tried {
+            match result {
+                Ok(filled) => all_filled.push(filled),
+                Err(Error::NotFilled { grains, cause }) => {
+                    causes.extend(grains.into_iter().map(|grain| (grain, cause.clone())));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        match causes.first_key_value() {
+            None => Ok(joined(&self.points, all_filled)),
+            Some((_, cause)) => {
+                let cause = cause.clone();
+                Err(Error::NotFilled { grains: causes.into_keys().collect(), cause })
+            }
+        }
+    }
+}
+
+/// A batch with the tetrahedra between its own points.
+type FilledBatch<'a> = (Batch<'a>, VolumeMesh);
+
+/// A batch that Gmsh fills. Where it cannot, its pieces one by one: so it is known which grains cannot be filled.
+fn filled_or_pieces(batch: Batch<'_>, grain_count: usize) -> Vec<Result<FilledBatch<'_>, Error>> {
+    match filled(&batch, grain_count) {
+        Err(Error::NotFilled { .. }) if batch.grains().len() > 1 => {
+            let pieces = batch.into_pieces();
+            pieces.map(|piece| filled(&piece, grain_count).map(|mesh| (piece, mesh))).collect()
+        }
+        result => vec![result.map(|mesh| (batch, mesh))],
     }
 }
 
@@ -118,17 +146,18 @@ fn filled(batch: &Batch<'_>, grain_count: usize) -> Result<VolumeMesh, Error> {
     write(SURFACE, &|out| batch.write_surface(out)).map_err(no_gmsh)?;
     write(SCRIPT, &|out| batch.write_script(SURFACE, out)).map_err(no_gmsh)?;
     let limit = TIME + TIME_OF_TRIANGLE * u32::try_from(batch.count()).unwrap_or(u32::MAX);
-    let mut last = None;
+    let mut last = String::new();
     for (algorithm, name) in ALGORITHMS {
         match run(folder.path(), algorithm, limit).and_then(|text| read_filled(&text, batch, grain_count)) {
             Ok(mut mesh) => {
                 mesh.repair(&batch.edges());
                 return Ok(mesh);
             }
-            Err(cause) => last = Some(Error::NotFilled { cause: format!("with {name}, {cause}") }),
+            Err(cause) => last = format!("with {name}, {cause}"),
         }
     }
-    Err(last.expect("there are algorithms"))
+    let grains = batch.grains().iter().map(|grain| grain.0).collect();
+    Err(Error::NotFilled { grains, cause: last })
 }
 
 /// The tetrahedra in a file of Gmsh, which must fill every grain.
@@ -142,10 +171,11 @@ fn read_filled(text: &str, batch: &Batch<'_>, grain_count: usize) -> Result<Volu
 }
 
 /// The tetrahedra of all batches between the points of the network, which each batch has by these numbers.
-fn joined<'a>(network: &[DVec3], batches: impl Iterator<Item = (&'a [u32], VolumeMesh)>) -> VolumeMesh {
+fn joined(network: &[DVec3], batches: Vec<FilledBatch<'_>>) -> VolumeMesh {
     let (surface_points, points) = (network.len(), network.to_vec());
     let mut all = VolumeMesh { surface_points, points, ..VolumeMesh::default() };
-    for (numbers, mesh) in batches {
+    for (batch, mesh) in batches {
+        let numbers = batch.numbers();
         let first = all.points.len();
         all.points.extend(&mesh.points[numbers.len()..]);
         let number = |corner: u32| match numbers.get(corner as usize) {

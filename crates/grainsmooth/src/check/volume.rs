@@ -145,13 +145,13 @@ impl VolumeReport {
     pub fn new(path: &Path, file: &VolumeFile) -> Self {
         let settings: Option<Table> = embedded_config(path).ok().flatten().and_then(|text| text.parse().ok());
         let mut found = Found::default();
-        elements::check(file, &mut found);
+        let volumes = elements::check(file, &mut found);
         let faces = Faces::new(file);
         conforming::check(file, &faces, &mut found);
         sets::check(file, &faces, settings.as_ref(), &mut found);
         ties::check(file, &faces, &mut found);
-        let volumes = elements::check_volumes(file, &mut found);
-        let volume: f64 = volumes.iter().map(|(_, volume)| volume).sum();
+        elements::check_volumes(file, &volumes, &mut found);
+        let volume: f64 = volumes.values().sum();
         let of_box = settings.as_ref().and_then(box_volume);
         if let Some(of_box) = of_box.filter(|of_box| (volume / of_box - 1.0).abs() > VOLUME_TOLERANCE) {
             let what = if file.shape == ElementShape::Triangle { "area" } else { "volume" };
@@ -170,7 +170,7 @@ impl VolumeReport {
             node_sets: file.node_sets.keys().cloned().collect(),
             surfaces: file.surfaces.keys().cloned().collect(),
             tied_nodes: file.ties.len(),
-            volumes,
+            volumes: volumes.into_iter().collect(),
             volume_error: of_box.map(|of_box| volume / of_box - 1.0),
             quality: file.quality(),
             faults: found.faults,

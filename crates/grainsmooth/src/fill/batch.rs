@@ -48,6 +48,11 @@ impl<'a> Batch<'a> {
         batches.into_iter().map(|pieces| Self::new(surface, pieces)).collect()
     }
 
+    /// A batch for each piece.
+    pub(super) fn into_pieces(self) -> impl Iterator<Item = Self> {
+        self.pieces.into_iter().map(move |piece| Self::new(self.surface, vec![piece]))
+    }
+
     fn new(surface: &'a Surface<'a>, pieces: Vec<Piece>) -> Self {
         let parts: BTreeSet<usize> =
             pieces.iter().flat_map(|piece| &piece.parts).map(|(part, _)| *part).collect();

@@ -32,7 +32,8 @@ impl Polycrystal {
     /// Remeshes boundaries where the config's [`ElementOptions`] ask for it; others stay as they are.
     ///
     /// # Errors
-    /// [`Error::CoarseReference`] where the finest level has too long edges for elements of that size; as of [`Network::remeshed`](polycrystal::Network::remeshed).
+    /// [`Error::CoarseReference`] where the finest level has too long edges for elements of that size; [`Error::WorksWithShortLines`] where it is short lines that cannot become points;
+    /// as of [`Network::remeshed`](polycrystal::Network::remeshed).
     pub fn remeshed_if_asked(self) -> Result<Self, Error> {
         match self.synthesis().map(|synthesis| synthesis.config.elements) {
             Some(options) => self.remeshed(&options),
@@ -83,7 +84,11 @@ impl Polycrystal {
                 self.validation.largest_volume_error = certificate.largest_volume_error;
                 (self.network, self.points, self.curved) = (network, points, curved);
             }
-            Err(error) => return Err(self.failure(error)),
+            Err(error) => {
+                let kept = ElementSize { merges_short_lines: false, ..size };
+                let works = merges_short_lines && self.network.remeshed(&self.points, &kept, cut).is_ok();
+                return Err(if works { Error::WorksWithShortLines(error) } else { self.failure(error) });
+            }
         }
         self.add_time(Stage::Remeshing, start.elapsed());
         Ok(self)

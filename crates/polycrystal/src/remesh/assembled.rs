@@ -15,7 +15,7 @@ use crate::remesh::outline::Numbering;
 use crate::remesh::short_lines::meetings_at;
 use crate::remesh::size_field::Surroundings;
 use crate::remesh::torus::Moved;
-use crate::{Level, Mesh, Network, NetworkError, WallSet};
+use crate::{Level, Mesh, Network, NetworkError, NodeType, WallSet};
 
 /// The triangles of one boundary, by new points; those inside it come after all points on lines, and are its own.
 pub(crate) struct NewBoundary {
@@ -25,14 +25,15 @@ pub(crate) struct NewBoundary {
 
 /// What a point is part of, and the walls that it lies on.
 #[derive(Clone, Copy)]
-struct At {
-    node_type: crate::NodeType,
-    grains: u8,
-    walls: WallSet,
+pub(super) struct At {
+    pub(super) node_type: NodeType,
+    pub(super) grains: u8,
+    pub(super) walls: WallSet,
 }
 
 impl At {
-    fn of(level: &Level, vertex: u32) -> Self {
+    /// What a vertex of the smooth network is part of. Both ends of a line that becomes a point lie on the same walls.
+    pub(super) fn of(level: &Level, vertex: u32) -> Self {
         let vertex = vertex as usize;
         Self {
             node_type: level.node_types[vertex],
@@ -110,16 +111,9 @@ pub(crate) fn assemble(
             let inner = At { node_type: meeting.node_type, grains: meeting.grains, walls: occurrence.walls };
             along[1..along.len() - 1].iter().for_each(|point| at[*point as usize] = Some(inner));
         }
-        for (point, vertex) in [
-            (along[0], occurrence.vertices[0]),
-            (along[along.len() - 1], occurrence.vertices[occurrence.vertices.len() - 1]),
-        ] {
-            let original = around.torus.vertices[vertex as usize].original;
-            if around.short.is_gone(original) {
-                at[point as usize].get_or_insert(At::of(around.level, around.node(vertex).original));
-            } else {
-                at[point as usize] = Some(At::of(around.level, vertex));
-            }
+        let ends = [occurrence.vertices[0], occurrence.vertices[occurrence.vertices.len() - 1]];
+        for (point, vertex) in [along[0], along[along.len() - 1]].into_iter().zip(ends) {
+            at[point as usize] = Some(At::of(around.level, vertex));
         }
     }
     let corners = of_part

@@ -39,7 +39,9 @@ fn jacobian_shares(corners: &[DVec3], middles: &[DVec3]) -> (f64, f64) {
     }
 }
 
-pub(super) fn check(file: &VolumeFile, found: &mut Found) {
+/// Checks each element; returns the volume of each grain, by its number. An element is one of its first grain.
+pub(super) fn check(file: &VolumeFile, found: &mut Found) -> BTreeMap<u32, f64> {
+    let mut volumes = BTreeMap::new();
     let [one, _, _] = file.shape.words();
     let mut middles = file.middles();
     for (element, (nodes, number)) in file.elements().zip(&file.element_numbers).enumerate() {
@@ -54,20 +56,23 @@ pub(super) fn check(file: &VolumeFile, found: &mut Found) {
             report("inverted", format!("{one} {number} has a node twice"));
             continue;
         }
-        let (shape, volume) = shape_and_volume(&corners);
+        let (shape, straight_volume) = shape_and_volume(&corners);
+        let places = middles.map(|middles| file.places(middles)).unwrap_or_default();
+        let (least_share, mean_share) = jacobian_shares(&corners, &places);
         if shape <= FLAT {
             let what = if file.shape == ElementShape::Triangle { "area" } else { "volume" };
-            report("inverted", format!("{one} {number} has the {what} {volume:.3e}"));
-        } else if let Some(middles) = middles {
-            let (share, _) = jacobian_shares(&corners, &file.places(middles));
-            if share <= 0.0 {
-                let message = format!(
-                    "the Jacobian determinant of {one} {number} may be {share:.3} of what it is with straight edges"
-                );
-                report("inverted", message);
-            }
+            report("inverted", format!("{one} {number} has the {what} {straight_volume:.3e}"));
+        } else if least_share <= 0.0 {
+            let message = format!(
+                "the Jacobian determinant of {one} {number} may be {least_share:.3} of what it is with straight edges"
+            );
+            report("inverted", message);
         }
-        match &file.grains[element][..] {
+        let grains = &file.grains[element][..];
+        if let Some(grain) = grains.first() {
+            *volumes.entry(grain.0).or_default() += mean_share * straight_volume;
+        }
+        match grains {
             [_] => {}
             [] => report("no grain", format!("{one} {number} is part of no grain")),
             grains => {
@@ -77,6 +82,7 @@ pub(super) fn check(file: &VolumeFile, found: &mut Found) {
         }
     }
     check_middles(file, found);
+    volumes
 }
 
 /// Elements that share an edge have one node in its middle.
@@ -97,18 +103,8 @@ fn check_middles(file: &VolumeFile, found: &mut Found) {
     }
 }
 
-/// Volumes of all grains, compared with what the file says. An element is one of its first grain.
-pub(super) fn check_volumes(file: &VolumeFile, found: &mut Found) -> Vec<(u32, f64)> {
-    let mut volumes: BTreeMap<u32, f64> = BTreeMap::new();
-    let mut middles = file.middles();
-    for (corners, grains) in file.elements().zip(&file.grains) {
-        let corners = file.places(corners);
-        let middles = middles.next().map(|middles| file.places(middles)).unwrap_or_default();
-        if let Some(grain) = grains.first() {
-            let (_, share) = jacobian_shares(&corners, &middles);
-            *volumes.entry(grain.0).or_default() += share * shape_and_volume(&corners).1;
-        }
-    }
+/// Compares the volumes of all grains with what the file says.
+pub(super) fn check_volumes(file: &VolumeFile, volumes: &BTreeMap<u32, f64>, found: &mut Found) {
     let stated = file.volumes.iter().filter(|stated| stated.len() == volumes.len()).flatten();
     for ((grain, volume), stated) in volumes.iter().zip(stated) {
         if (volume / stated - 1.0).abs() > VOLUME_TOLERANCE {
@@ -116,5 +112,4 @@ pub(super) fn check_volumes(file: &VolumeFile, found: &mut Found) -> Vec<(u32, f
             found.push("wrong volume", message, None).grains = vec![*grain];
         }
     }
-    volumes.into_iter().collect()
 }

@@ -9,14 +9,14 @@ use voronoi::{PeriodicPair, Translation};
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
-use crate::remesh::assembled::{Assembled, NewBoundary};
+use crate::remesh::assembled::{Assembled, At, NewBoundary};
 use crate::remesh::curved::{CurvedBoundaries, LineMiddle};
 use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
 use crate::remesh::short_lines::meetings_at;
 use crate::remesh::size_field::Surroundings;
 use crate::remesh::torus::Moved;
-use crate::{BoundaryId, GrainId, Level, Mesh, Network, NetworkError, NodeType, WallSet};
+use crate::{BoundaryId, GrainId, Level, Mesh, Network, NetworkError};
 
 /// Where a line stands, as part of a boundary.
 struct Piece {
@@ -69,23 +69,18 @@ pub(super) fn assemble(
         _ => id(numbering.count + copies.binary_search(&point).expect("all copies were listed")),
     };
     let point_count = numbering.count + copies.len();
-    let mut at: Vec<(NodeType, u8, WallSet)> = vec![(NodeType::INTERIOR, 0, WallSet::EMPTY); point_count];
+    let mut at: Vec<Option<At>> = vec![None; point_count];
     let (mut segments, mut boundary_of, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for piece in &pieces {
         let (points, vertices) = along(piece);
         let points: Vec<u32> = points.into_iter().map(number).collect();
-        let inside = Meeting::inside(&network.boundaries()[piece.boundary.index()]);
-        let walls = occurrences[piece.occurrence].walls;
-        for point in &points {
-            at[*point as usize] = (inside.node_type, inside.grains, walls);
-        }
+        let Meeting { node_type, grains, .. } =
+            Meeting::inside(&network.boundaries()[piece.boundary.index()]);
+        let inside = At { node_type, grains, walls: occurrences[piece.occurrence].walls };
+        points.iter().for_each(|point| at[*point as usize] = Some(inside));
         for (point, vertex) in [points[0], points[points.len() - 1]].into_iter().zip(vertices) {
-            let vertex = vertex as usize;
-            let original = around.torus.vertices[vertex].original;
-            let is_gone = around.short.is_gone(original);
-            let stays = if is_gone { around.node(id(vertex)).original as usize } else { vertex };
-            at[point as usize] = (smooth.node_types[stays], smooth.grain_counts[stays], smooth.walls[stays]);
-            if around.skeleton.is_node[vertex] {
+            at[point as usize] = Some(At::of(smooth, vertex));
+            if around.skeleton.is_node[vertex as usize] {
                 corners.push(point);
             }
         }
@@ -97,9 +92,11 @@ pub(super) fn assemble(
         [points[0], points[points.len() - 1]].map(|point| (point, piece.boundary))
     });
     for (point, meeting) in meetings_at(&numbering.merged(&around.short), network, ends) {
-        let at = &mut at[number(point) as usize];
-        (at.0, at.1) = (meeting.node_type, meeting.grains);
+        if let Some(at) = &mut at[number(point) as usize] {
+            (at.node_type, at.grains) = (meeting.node_type, meeting.grains);
+        }
     }
+    let at: Vec<At> = at.into_iter().map(|at| at.expect("every point is on a line")).collect();
     let pairs = (id(numbering.count)..).zip(&copies).map(|(secondary, copy)| PeriodicPair {
         secondary,
         primary: copy.original,
@@ -109,10 +106,10 @@ pub(super) fn assemble(
     let level = Level {
         mesh: Mesh::Segments(CurveMesh::new(point_count, segments, &corners)?),
         boundary_of,
-        node_types: at.iter().map(|at| at.0).collect(),
-        grain_counts: at.iter().map(|at| at.1).collect(),
+        node_types: at.iter().map(|at| at.node_type).collect(),
+        grain_counts: at.iter().map(|at| at.grains).collect(),
         generations: vec![0; point_count],
-        walls: at.iter().map(|at| at.2).collect(),
+        walls: at.iter().map(|at| at.walls).collect(),
         copies: PeriodicCopies { vertices, elements: Vec::new() },
         at_edges: Vec::new(),
     };
