@@ -132,6 +132,10 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
         ),
         ("--order 2", "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
         (
+            "--order 2 --voxels 4 4 4 -o a.inp",
+            "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp, without --voxels",
+        ),
+        (
             "--cohesive --order 2 -o a.inp",
             "--cohesive makes elements COH3D6 or COH2D4, and Abaqus has none of second order; leave --order 2 or --cohesive out",
         ),

@@ -174,8 +174,9 @@ impl ResultFiles {
             )));
         }
         if volume.order.is_some() && !self.need_elements() {
+            let without = if to_write.has_voxels { ", without --voxels" } else { "" };
             return Err(usage(&format!(
-                "--order needs {elements}; give --volume-mesh -o grains.vtu, or -o grains.inp",
+                "--order needs {elements}; give --volume-mesh -o grains.vtu, or -o grains.inp{without}",
             )));
         }
         let has_properties = self.formats().into_iter().any(OutputFormat::has_plane_state);
