@@ -5,7 +5,6 @@ pub(crate) mod balance;
 pub(crate) mod boundary_flow;
 pub(crate) mod dihedral_sectors;
 pub(crate) mod fan_flow;
-pub(crate) mod momentum;
 pub(crate) mod pressure_response;
 pub(crate) mod recipe;
 pub(crate) mod relaxation;

@@ -144,14 +144,7 @@ fn relax_levels<T>(
 ) -> Result<(Relaxed, T), NetworkError> {
     let Plan { relaxation, start, volumes, tuning, tension_unit } = *plan;
     let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
-    let flow = |level: usize| {
-        let flow = Flow::new(network, level, volumes, tension_unit, *tuning);
-        match relaxation {
-            // In the plane nothing holds a flow up: steps may be long.
-            Relaxation::Equilibrium if is_in_space => flow.until_rest(),
-            _ => flow,
-        }
-    };
+    let flow = |level: usize| Flow::new(network, level, volumes, tension_unit, *tuning);
     let accepted = |relaxed: Relaxed| accept(&relaxed).map(|made| (relaxed, made));
     relaxation.check()?;
     let (time, finest) = match relaxation {

@@ -30,7 +30,7 @@ pub(crate) struct Patches {
     /// Of each control point the other ends of its edges, and the edges.
     links: Grouped<[u32; 2]>,
     /// The largest cotangent that an angle counts with.
-    pub(crate) largest_cotangent: f64,
+    largest_cotangent: f64,
 }
 
 /// What all patches bring to a step.

@@ -5,10 +5,6 @@
 
 use glam::DVec3;
 
-/// The largest cotangent that an angle counts with where points have little time to part: that of 11 degrees. Needles would otherwise glue
-/// their ends together.
-pub(crate) const LARGEST_COTANGENT: f64 = 5.0;
-
 pub(crate) struct Triangle {
     corners: [DVec3; 3],
     /// Twice as long as the area.

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::pressure_response::{CHUNK, PressureResponse};
-use crate::flow::system::{Parts, single};
+use crate::flow::system::Parts;
 use crate::flow::tied_points::Numbering;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::{CsrRows, NewRow};
+use crate::solver::rows::{CsrRows, NewRow, single};
 use crate::{Freedom, Level, Network, Volumes};
 
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
@@ -22,6 +22,8 @@ pub(crate) struct Unknowns<'a> {
     /// Of each point, as of [`LocalSize`](crate::energy::local_size::LocalSize).
     pub(crate) sizes: &'a [f64],
     pub(crate) groups: &'a Numbering,
+    /// As of [`Tuning`](crate::Tuning).
+    pub(crate) junction_softness: f64,
 }
 
 /// The parts of a step of some unknowns.
@@ -51,6 +53,7 @@ pub(crate) fn assemble(
         masses: masses(patches, terms, unknowns),
         gradient: gradient(patches, terms, groups),
         stiffness,
+        softness: softness(unknowns, volumes),
         volumes: constraint,
         freedoms,
         sliding: match volumes {
@@ -80,6 +83,19 @@ fn in_chunks(groups: &Numbering) -> impl IndexedParallelIterator<Item = usize> {
 fn freedoms(network: &Network, Unknowns { level, groups, .. }: &Unknowns<'_>) -> Vec<Freedom> {
     let freedom = |group| groups.freedom(group, |point| network.freedom(level.walls[point as usize]));
     in_chunks(groups).map(freedom).collect()
+}
+
+/// The softness of each group, as of [`Parts`].
+fn softness(Unknowns { level, groups, junction_softness, .. }: &Unknowns<'_>, volumes: Volumes) -> Vec<f64> {
+    let is_junction = |point: &u32| is_junction(level, *point);
+    let of_group = |group: usize| match groups.members(group).iter().any(is_junction) {
+        true => *junction_softness,
+        false => 1.0,
+    };
+    match volumes {
+        Volumes::Kept => in_chunks(groups).map(of_group).collect(),
+        Volumes::Free => vec![1.0; groups.group_count()],
+    }
 }
 
 /// The mass of each group.
@@ -126,6 +142,12 @@ pub(crate) fn gradient(patches: &Patches, terms: &Terms, groups: &Numbering) -> 
     in_chunks(groups).map(gradient).collect()
 }
 
+/// Whether three boundaries or more share a point, walls not counted.
+fn is_junction(level: &Level, point: u32) -> bool {
+    let point = point as usize;
+    level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
+}
+
 /// The part of the mass of junctions that does not resist their motion.
 ///
 /// Boundaries resist to be moved along their normals only, and junctions have no drag of their own: a boundary of mass m and
@@ -141,10 +163,7 @@ fn sliding_masses(
     groups: &Numbering,
     level: &Level,
 ) -> Vec<(usize, DMat3)> {
-    let is_junction = |point: &u32| {
-        let point = *point as usize;
-        level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
-    };
+    let is_junction = |point: &u32| is_junction(level, *point);
     let of_group = |group: usize| {
         groups.members(group).iter().any(is_junction).then(|| {
             let places = groups.places(group, patches);

@@ -19,7 +19,6 @@ use crate::check::folds::is_folded;
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
-use crate::flow::momentum::Momentum;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
@@ -113,12 +112,6 @@ impl<'a> Flow<'a> {
         Self { network, patches, sizes, level, surface, elements, groups, volumes, tuning }
     }
 
-    /// The flow as one until all is at rest.
-    pub(crate) fn until_rest(mut self) -> Self {
-        self.patches.largest_cotangent = self.tuning.largest_cotangent_to_rest;
-        self
-    }
-
     /// Takes the steps of a stage.
     ///
     /// `progress` is told the number of steps done and where the points are.
@@ -147,16 +140,13 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
-        // In the plane lines come to rest as soon without.
-        let is_in_space = matches!(self.control_mesh(), Mesh::Triangles(_));
-        let mut momentum = (is_in_space && stage.least_gain > 0.0).then(|| Momentum::new(points.len()));
         let finest = self.finest_sectors();
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         let mut surface = self.refined(&points);
         for step in 1..=stage.steps {
             check_cancelled();
-            let energy = self.step(&mut points, &mut surface, stage.step_time, momentum.as_mut())?;
+            let energy = self.step(&mut points, &mut surface, stage.step_time)?;
             progress(step, &points);
             if stage.least_gain > 0.0
                 && let Some(defects) = self.defects(&surface, &finest)
@@ -238,7 +228,6 @@ impl<'a> Flow<'a> {
         points: &mut Vec<DVec3>,
         surface: &mut Vec<DVec3>,
         time: f64,
-        mut momentum: Option<&mut Momentum>,
     ) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let volumes = volumes_of_grains(self.network.boundaries(), &terms.cones, self.network.grain_count());
@@ -262,9 +251,6 @@ impl<'a> Flow<'a> {
         check_cancelled();
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
-        if let Some(momentum) = &mut momentum {
-            momentum.add_to(&mut moves);
-        }
         let mut after = None;
         let moved = groups.moved_unbroken(
             points,
@@ -276,9 +262,6 @@ impl<'a> Flow<'a> {
             },
         )?;
         *surface = after.expect("what is moved was looked at");
-        if let Some(momentum) = momentum {
-            momentum.last = moved.iter().zip(&*points).map(|(to, from)| *to - *from).collect();
-        }
         *points = moved;
         // What turns over in the plane as grains grow may be going on to vanish.
         let is_growth_in_plane =
@@ -328,7 +311,14 @@ impl<'a> Flow<'a> {
     }
 
     fn unknowns<'b>(&'b self, points: &'b [DVec3], groups: &'b Numbering) -> Unknowns<'b> {
-        Unknowns { level: &self.network.levels()[self.level], points, sizes: &self.sizes, groups }
+        let junction_softness = self.tuning.junction_softness;
+        Unknowns {
+            level: &self.network.levels()[self.level],
+            points,
+            sizes: &self.sizes,
+            groups,
+            junction_softness,
+        }
     }
 
     /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is

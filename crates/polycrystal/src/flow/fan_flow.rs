@@ -10,12 +10,12 @@ use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::FREE_TOLERANCE;
 use crate::flow::boundary_flow::SLIGHT_BEND;
 use crate::flow::pressure_response::CHUNK;
-use crate::flow::system::{Parts, System, single};
+use crate::flow::system::{Parts, System};
 use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::{CsrRows, NewRow};
+use crate::solver::rows::{CsrRows, NewRow, single};
 use crate::{Freedom, GrainId, NetworkError};
 
 /// Fans that flow.
@@ -48,7 +48,7 @@ impl FanFlow<'_> {
     /// many attempts as the worst place of all.
     pub(crate) fn step(&self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
         let Self { fans, tuning, .. } = *self;
-        let terms = fans.terms(points, tuning.largest_cotangent_to_rest);
+        let terms = fans.terms(points, tuning.largest_cotangent);
         let before = fans.normals(points);
         let (missing, tolerance) = match self.motion {
             Motion::Kept { volumes, .. } => {
@@ -87,6 +87,11 @@ impl FanFlow<'_> {
         !self.broken(&self.fans.normals(from), &self.fans.normals(to)).is_empty()
     }
 
+    /// As [`Fans::at_point`], but for walls.
+    fn inside_at(&self, point: usize) -> impl Iterator<Item = (usize, usize)> {
+        self.fans.at_point(point).filter(|(fan, _)| self.fans.wall(*fan).is_none())
+    }
+
     fn of_points<T: Send>(&self, of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         (0..self.fans.point_count()).into_par_iter().with_min_len(CHUNK).map(of_point).collect()
     }
@@ -115,7 +120,7 @@ impl FanFlow<'_> {
             }
         };
         let volume_gradients = |point: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
-            for (fan, slot) in fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none()) {
+            for (fan, slot) in self.inside_at(point) {
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
                     if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
                         volume_gradients.add(GrainId(cell.0), of_slot(fan, slot).volume_gradient * sign);
@@ -125,6 +130,10 @@ impl FanFlow<'_> {
         };
         let gradient = |point: usize| -> DVec3 {
             fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
+        };
+        let softness = |point: usize| match self.motion {
+            Motion::Kept { .. } if self.inside_at(point).nth(2).is_some() => self.tuning.junction_softness,
+            Motion::Kept { .. } | Motion::Free { .. } => 1.0,
         };
         let constraint = || match self.motion {
             Motion::Kept { volumes, .. } => {
@@ -138,6 +147,7 @@ impl FanFlow<'_> {
             masses: self.masses(terms),
             gradient: self.of_points(gradient),
             stiffness,
+            softness: self.of_points(softness),
             freedoms: freedoms.to_vec(),
             volumes,
             sliding: match self.motion {
@@ -166,10 +176,9 @@ impl FanFlow<'_> {
                 })
             }
             // Nothing holds what lies on walls up.
-            Motion::Free { mobilities } => self.of_points(|point| {
-                let inside = fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none());
-                inside.map(|at| mass(at) / mobilities[at.0]).sum()
-            }),
+            Motion::Free { mobilities } => {
+                self.of_points(|point| self.inside_at(point).map(|at| mass(at) / mobilities[at.0]).sum())
+            }
         }
     }
 
@@ -177,12 +186,11 @@ impl FanFlow<'_> {
     fn sliding_masses(&self, terms: &FanTerms, mobilities: &[f64]) -> Vec<(usize, DMat3)> {
         let fans = self.fans;
         let of_point = |point: usize| {
-            let inside = fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none());
             let part = |(fan, slot): (usize, usize)| {
                 let terms = &terms.of_slot[fans.first_slot(fan) + slot];
                 (terms.volume_gradient, terms.mass / mobilities[fan])
             };
-            let parts: Vec<(DVec3, f64)> = inside.map(part).collect();
+            let parts: Vec<(DVec3, f64)> = self.inside_at(point).map(part).collect();
             (parts.len() >= 3).then(|| (point, sliding_mass(parts)))
         };
         let junctions = 0..fans.vertex_count() + fans.lines.len();

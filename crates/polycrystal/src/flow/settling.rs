@@ -15,10 +15,6 @@ use crate::flow::tuning::Tuning;
 use crate::network::{feature_size, mean_grain_size};
 use crate::{CellComplex, NetworkError};
 
-/// Longest time of a step, in units of the mean grain size squared. Short lines would shrink to nothing in less: what is
-/// left of them is still there, as a step lets none turn over.
-const STEP_TIME: f64 = 0.15;
-
 /// Most steps: long before that all is at rest.
 const STEPS: usize = 150;
 
@@ -52,8 +48,8 @@ pub(crate) fn settle(
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Settled, NetworkError> {
     let (count, step_time) = match *relaxation {
-        Relaxation::Time(time) => equal_steps(time),
-        Relaxation::Equilibrium => (STEPS, STEP_TIME),
+        Relaxation::Time(time) => equal_steps(time, tuning.cell_step_time),
+        Relaxation::Equilibrium => (STEPS, tuning.cell_step_time),
     };
     let domain = tessellation.domain();
     let mean_size = mean_grain_size(domain, volumes.len());
@@ -101,8 +97,8 @@ pub(crate) fn settle(
     unreachable!("the last step returns")
 }
 
-/// A time in as few equal steps as may be, and the time of each. After the most steps all is at rest.
-fn equal_steps(time: f64) -> (usize, f64) {
-    let count = (1..=STEPS).find(|count| time <= STEP_TIME * *count as f64);
-    count.map_or((STEPS, STEP_TIME), |count| (count, time / count as f64))
+/// A time in as few equal steps as may be, and the time of each, given the longest. After the most steps all is at rest.
+fn equal_steps(time: f64, longest: f64) -> (usize, f64) {
+    let count = (1..=STEPS).find(|count| time <= longest * *count as f64);
+    count.map_or((STEPS, longest), |count| (count, time / count as f64))
 }

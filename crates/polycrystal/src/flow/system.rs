@@ -25,8 +25,11 @@ pub(crate) struct Parts {
     pub(crate) masses: Vec<f64>,
     /// The gradient g of the energy.
     pub(crate) gradient: Vec<DVec3>,
-    /// The stiffness K, as stiffness to other unknowns.
+    /// The stiffness K, as stiffness to other unknowns. In single precision: what comes of a step is sought to a hundredth, and its matrix has to
+    /// come through the memory again and again. That of an element without length is the largest such number.
     pub(crate) stiffness: CsrRows<f32>,
+    /// How many times as soft as K each unknown is: its row and its column are divided by the root of that.
+    pub(crate) softness: Vec<f64>,
     /// What walls leave to each unknown.
     pub(crate) freedoms: Vec<Freedom>,
     /// The gradients J of the volumes; nothing where they are free.
@@ -35,14 +38,7 @@ pub(crate) struct Parts {
     pub(crate) sliding: Vec<(usize, DMat3)>,
 }
 
-/// A stiffness in single precision: what comes of a step is sought to a hundredth, and its matrix has to come through the memory again and
-/// again. That of an element without length, which no number of that kind can hold, becomes the largest.
-#[expect(clippy::cast_possible_truncation, reason = "rounding")]
-pub(crate) fn single(stiffness: f64) -> f32 {
-    stiffness.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
-}
-
-/// `(M + dt K) d = -dt g + J^T p` for displacements d, with pressures p such that `J d` is given.
+/// `(M + dt K) d = -dt g + J^T p` for displacements d, with K softened, and pressures p such that `J d` is given.
 pub(crate) struct System {
     /// `dt`.
     time: f64,
@@ -61,12 +57,13 @@ pub(crate) struct System {
 impl System {
     /// The system of a step of the given time, which is solved up to a share of its first residual.
     pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
-        let Parts { masses, gradient, stiffness, freedoms, volumes, sliding } = parts;
+        let Parts { masses, gradient, mut stiffness, softness, freedoms, volumes, sliding } = parts;
         let diagonal = |(unknown, mass): (usize, &f64)| {
             let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, entry)| f64::from(*entry)).sum();
-            mass + time * stiffness
+            mass + time * stiffness / softness[unknown]
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
+        stiffness.divide(&softness.iter().map(|softness| softness.sqrt()).collect::<Vec<_>>());
         let response = PressureResponse::new(&diagonal, &freedoms, volumes);
         let mut forces = gradient;
         forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);

@@ -105,8 +105,8 @@ impl<'a> LevelView<'a> {
         let held = self.held();
         match (self, &held.mesh) {
             (Self::Refined { .. }, Mesh::Triangles(mesh)) if vertex >= held.vertex_count() => {
-                let ends = mesh.edge(EdgeId(id(vertex - held.vertex_count())));
-                common_walls(held, ends, sets)
+                let edge = vertex - held.vertex_count();
+                walls_between(held, mesh.edge(EdgeId(id(edge))), &held.at_edges[edge], sets)
             }
             _ => held.walls[vertex],
         }
@@ -148,8 +148,12 @@ impl<'a> LevelView<'a> {
     }
 }
 
-/// The walls of a vertex between two others. A line between two points of a wall lies in the wall: no element joins walls through the inside.
-fn common_walls(level: &Level, ends: [u32; 2], sets: &WallSets) -> WallSet {
+/// The walls of a vertex that is born between two others, given what meets there. A triangle inside may have two corners on a wall, where lines
+/// are curved: the edge between these is not on it.
+fn walls_between(level: &Level, ends: [u32; 2], born: &Meeting, sets: &WallSets) -> WallSet {
+    if !born.node_type.is_outer() {
+        return WallSet::EMPTY;
+    }
     let [a, b] = ends.map(|end| level.walls[end as usize]);
     sets.intersection(a, b)
 }
@@ -210,7 +214,7 @@ impl Level {
         let mut grain_counts = self.grain_counts.clone();
         grain_counts.extend(born.iter().map(|at| at.grains));
         let mut walls = self.walls.clone();
-        walls.extend(ends.iter().map(|ends| common_walls(self, *ends, sets)));
+        walls.extend(ends.iter().zip(born).map(|(ends, born)| walls_between(self, *ends, born, sets)));
         check_cancelled();
         let copies = self.refined_copies((&mesh).into());
         Self { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges }

@@ -128,6 +128,27 @@ impl<T: AddAssign> NewRow<'_, T> {
     }
 }
 
+impl CsrRows<f32> {
+    /// Divides each entry by the scales of its row and of its column.
+    pub(crate) fn divide(&mut self, scales: &[f64]) {
+        let divide = |(block, Block { starts, entries }): (usize, &mut Block<f32>)| {
+            for (row, range) in starts.windows(2).enumerate() {
+                let scale = scales[block * ROWS_PER_TASK + row];
+                for (column, value) in &mut entries[range[0]..range[1]] {
+                    *value = single(f64::from(*value) / (scale * scales[*column as usize]));
+                }
+            }
+        };
+        self.blocks.par_iter_mut().enumerate().for_each(divide);
+    }
+}
+
+/// A number in single precision. One that is too large becomes the largest.
+#[expect(clippy::cast_possible_truncation, reason = "rounding")]
+pub(crate) fn single(value: f64) -> f32 {
+    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
+}
+
 impl CsrRows<f64> {
     /// The entries on the diagonal, 0 where there is none.
     pub(crate) fn diagonal(&self) -> Vec<f64> {

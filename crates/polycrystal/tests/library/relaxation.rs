@@ -371,21 +371,26 @@ fn volumes_are_restored_in_thin_boxes_and_where_much_is_rigid() {
 /// Springs on edges of length 1e-9 once made the matrix of a step indefinite, and the whole network froze.
 #[test]
 fn nearly_touching_quadruple_points_do_not_freeze_the_network() {
-    let mut seeds = random_seeds(&Domain::unit_cube(), 60, 9);
-    let (network_before, flat) = network(&Domain::unit_cube(), &seeds, 1);
-    let expected = spread(&network_before, &relaxed(&network_before, &flat));
-    // A fifth seed on the circumsphere of four neighbours, but for 1e-9, splits their vertex in two.
-    let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
-    let vertex = tessellation
-        .vertices()
-        .iter()
-        .copied()
-        .min_by(|a, b| a.distance(DVec3::splat(0.5)).total_cmp(&b.distance(DVec3::splat(0.5))));
-    let vertex = vertex.expect("vertices");
-    let radius = seeds.iter().map(|seed| seed.distance(vertex)).fold(f64::INFINITY, f64::min);
-    seeds.push(vertex + DVec3::new(0.48, 0.6, 0.64).normalize() * radius * (1.0 + 1e-9));
-    let (network, flat) = network(&Domain::unit_cube(), &seeds, 1);
-    assert!(spread(&network, &relaxed(&network, &flat)) < expected + 2.0);
+    let excess = |random_seed: u64| {
+        let mut seeds = random_seeds(&Domain::unit_cube(), 60, random_seed);
+        let (network_before, flat) = network(&Domain::unit_cube(), &seeds, 1);
+        let expected = spread(&network_before, &relaxed(&network_before, &flat));
+        // A fifth seed on the circumsphere of four neighbours, but for 1e-9, splits their vertex in two.
+        let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+        let vertex = tessellation
+            .vertices()
+            .iter()
+            .copied()
+            .min_by(|a, b| a.distance(DVec3::splat(0.5)).total_cmp(&b.distance(DVec3::splat(0.5))));
+        let vertex = vertex.expect("vertices");
+        let radius = seeds.iter().map(|seed| seed.distance(vertex)).fold(f64::INFINITY, f64::min);
+        seeds.push(vertex + DVec3::new(0.48, 0.6, 0.64).normalize() * radius * (1.0 + 1e-9));
+        let (network, flat) = network(&Domain::unit_cube(), &seeds, 1);
+        spread(&network, &relaxed(&network, &flat)) - expected
+    };
+    // One fold elsewhere changes that of a single network by two degrees.
+    let mean = (9..13).map(excess).sum::<f64>() / 4.0;
+    assert!(mean < 1.0, "{mean} degrees");
 }
 
 /// A grain inside a cluster of seeds, far smaller than what is rigid, once had a pressure against rounding alone: it missed its volume by NaN.

@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::fan::Fan;
 use super::{Beside, LocalArea, Place, SMALL};
-use crate::energy::triangle::LARGEST_COTANGENT;
 
 /// Most steps of descent.
 const STEPS: usize = 20;
@@ -14,6 +13,9 @@ const HALVINGS: usize = 10;
 
 /// The least cotangent that an angle counts with: all are positive, so that each step goes down.
 pub(super) const LEAST_COTANGENT: f64 = 0.05;
+
+/// The largest one: that of 11 degrees. Needles would otherwise glue their ends together.
+pub(super) const LARGEST_COTANGENT: f64 = 5.0;
 
 /// Most that a step is longer than the one before.
 const LARGEST_GROWTH: f64 = 10.0;

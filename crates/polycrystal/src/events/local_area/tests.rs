@@ -1,8 +1,7 @@
 use voronoi::{Domain, Tessellation};
 
-use super::descent::LEAST_COTANGENT;
+use super::descent::{LARGEST_COTANGENT, LEAST_COTANGENT};
 use super::*;
-use crate::energy::triangle::LARGEST_COTANGENT;
 
 /// Lines that are too short elsewhere are no reason against an event here.
 #[test]

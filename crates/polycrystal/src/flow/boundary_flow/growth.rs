@@ -98,12 +98,12 @@ impl Flow<'_> {
     fn try_step(&mut self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
         let groups = self.groups.clone();
         let mut at_once = points.to_vec();
-        self.step(&mut at_once, &mut self.refined(points), time, None)?;
+        self.step(&mut at_once, &mut self.refined(points), time)?;
         self.groups = groups;
         let mut halves = points.to_vec();
         let mut surface = self.refined(points);
-        self.step(&mut halves, &mut surface, 0.5 * time, None)?;
-        self.step(&mut halves, &mut surface, 0.5 * time, None)?;
+        self.step(&mut halves, &mut surface, 0.5 * time)?;
+        self.step(&mut halves, &mut surface, 0.5 * time)?;
         let volumes = self.volumes_at(&halves);
         let differences = self.volumes_at(&at_once).into_iter().zip(&volumes).map(|(whole, halves)| {
             let error = (whole / halves - 1.0).abs();
