@@ -177,6 +177,28 @@ fn more_than_memory_holds() {
     }
 }
 
+/// Formats that hold all voxels at once, which not all do; a network that is there already has no estimate.
+#[test]
+fn more_voxels_than_memory_holds() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 2 -n 0 --relax 0 -o two.vtp");
+    let message = |needed: &str| {
+        format!(
+            "with so many voxels, the run would take {needed} of memory and ... are available; give fewer with --voxels"
+        )
+    };
+    for (arguments, needed) in [
+        ("-o a.inp", "2.0 PB"),
+        ("--volume-mesh -o a.vtu", "9.5 PB"),
+        ("-o a.dream3d", "5.0 PB"),
+        ("smooth two.vtp -n 1 -o a.inp", "2.0 PB"),
+        ("remesh two.vtp --elements-per-grain 1 -o a.inp", "2.0 PB"),
+    ] {
+        let arguments = format!("{arguments} --voxels 50000 50000 50000");
+        workplace.refuses(&arguments, FAILED, &message(needed));
+    }
+}
+
 /// A seed file's size is known only when its cells are.
 #[test]
 fn more_levels_than_memory_holds_for_seeds_from_a_file() {

@@ -121,6 +121,13 @@ const REMEDIES: &[Remedy] = &[
         "--seeds 5 --inside lamellae(width=0.57)",
     ),
     (
+        "VoxelsExceedMemory",
+        &[],
+        "--seeds 2 --voxels 65536 65536 65536 -o a.inp",
+        &[],
+        "--seeds 2 --voxels 9 9 9 -o a.inp",
+    ),
+    (
         "PartsExceedMemory",
         &[],
         "--seeds 5 --inside lamellae(width=1e-12)",

@@ -70,6 +70,7 @@ pub const REFUSALS: &[Kind] = &[
     // Counts.
     ("CellsExceedMemory", &["cells would take", "of memory"]),
     ("InsideError::NothingDivided", &["divides no grain", "at most"]),
+    ("VoxelsExceedMemory", &["with so many voxels", "of memory"]),
     ("PartsExceedMemory", &["parts of grains would take", "of memory"]),
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),

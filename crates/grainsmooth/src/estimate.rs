@@ -39,8 +39,10 @@ impl Estimate {
     /// The size of what becomes of some cells, in files of these formats.
     pub fn new(config: &Config, cells: &Tessellated, formats: &[OutputFormat]) -> Self {
         let tessellation = &cells.tessellation;
+        let to_write = config.to_write();
+        let of_voxels = formats.iter().map(|format| format.memory_of_voxels(&to_write)).max().unwrap_or(0);
         let is_flat = config.dimension == Dimension::Two;
-        let control_mesh = match config.effective_regularize() {
+        let mut control_mesh = match config.effective_regularize() {
             length if length > 0.0 && !config.lets_topology_change() => {
                 let (regular, _) = remove_short_edges(tessellation, length);
                 let MeshSize { points, edges, triangles } =
@@ -50,6 +52,7 @@ impl Estimate {
             }
             _ => crate::run::pipeline::control_mesh(config, tessellation),
         };
+        control_mesh.besides = control_mesh.besides.saturating_add(of_voxels);
         let grains = cells.grain_count();
         let smooth = control_mesh.after(config.levels);
         let remeshed = config.elements.are_asked().then(|| Remeshed::new(config, cells));
@@ -77,7 +80,8 @@ impl Estimate {
     /// Checks that it fits.
     ///
     /// # Errors
-    /// [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) and [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
+    /// [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory), [`VoxelsExceedMemory`](crate::memory::MemoryError::VoxelsExceedMemory) and
+    /// [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
     pub fn check(&self) -> Result<(), Error> {
         Ok(check_levels(self.control_mesh, self.levels, self.available)?)
     }

@@ -126,6 +126,17 @@ pub enum MemoryError {
         /// Bytes that there are.
         available: u64,
     },
+    /// So many voxels, all held at once, need more memory than there is.
+    #[error(
+        "with so many voxels, the run would take {} of memory and {} are available; give fewer with --voxels",
+        in_words(*needed), in_words(u128::from(*available))
+    )]
+    VoxelsExceedMemory {
+        /// Bytes that they would take, and the network as far as it is known.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
     /// So many levels of subdivision need more memory than there is.
     #[error(
         "{levels} levels would take {} of memory and {} are available; {}",
@@ -164,7 +175,7 @@ pub struct ControlMesh {
     /// Boundaries in the plane, of two segments each, that are to bend to arcs: they are divided as often as makes the last level look
     /// smooth.
     pub arcs: u128,
-    /// Bytes that are taken besides the network, for voxels that are labelled.
+    /// Bytes that are taken besides the network, for voxels.
     pub besides: u128,
     /// Whether boundaries stay as flat as the cells.
     pub is_still: bool,
@@ -228,7 +239,8 @@ impl ControlMesh {
 /// named with 32-bit ids.
 ///
 /// # Errors
-/// [`MemoryError::LevelsExceedMemory`] or [`MemoryError::LevelsExceedIds`], with the most levels that would fit.
+/// [`MemoryError::VoxelsExceedMemory`] where the network would fit without its voxels, otherwise [`MemoryError::LevelsExceedMemory`] or
+/// [`MemoryError::LevelsExceedIds`], with the most levels that would fit.
 pub fn check_levels(
     control_mesh: impl Into<ControlMesh>,
     levels: u32,
@@ -240,6 +252,10 @@ pub fn check_levels(
     if fits(levels) {
         return Ok(());
     }
+    let without_voxels = ControlMesh { besides: 0, ..control_mesh }.bytes_after(levels);
+    if control_mesh.after(levels).fits_ids() && without_voxels <= u128::from(available) {
+        return Err(MemoryError::VoxelsExceedMemory { needed: needed(levels), available });
+    }
     // Sizes grow with the level, and from 128 on they stand still.
     let largest = (0..levels.min(128)).rev().find(|&level| fits(level));
     if needed(levels) > u128::from(available) {
@@ -247,6 +263,17 @@ pub fn check_levels(
     } else {
         Err(MemoryError::LevelsExceedIds { levels, size: control_mesh.after(levels), largest })
     }
+}
+
+/// Checks that voxels of so many bytes can be held in `available` ones.
+///
+/// # Errors
+/// [`MemoryError::VoxelsExceedMemory`].
+pub fn check_voxels(needed: u128, available: u64) -> Result<(), MemoryError> {
+    if needed <= u128::from(available) {
+        return Ok(());
+    }
+    Err(MemoryError::VoxelsExceedMemory { needed, available })
 }
 
 /// Checks that so many cells can be held in `available` bytes.
@@ -389,6 +416,28 @@ mod tests {
                 other => panic!("{other:?}"),
             }
         }
+    }
+
+    #[test]
+    fn voxels_are_the_cause_where_the_network_fits_without_them() {
+        let needed = u64::try_from(TETRAHEDRON.bytes_after(5)).unwrap();
+        let with_voxels = ControlMesh { besides: 1000, ..TETRAHEDRON };
+        assert!(check_levels(with_voxels, 5, needed + 1000).is_ok());
+        let available = needed + 999;
+        assert_eq!(
+            check_levels(with_voxels, 5, available),
+            Err(MemoryError::VoxelsExceedMemory { needed: u128::from(needed) + 1000, available })
+        );
+        // Fewer voxels would not be enough.
+        assert!(matches!(
+            check_levels(with_voxels, 5, needed - 1),
+            Err(MemoryError::LevelsExceedMemory { .. })
+        ));
+        assert!(check_voxels(1000, 1000).is_ok());
+        assert_eq!(
+            check_voxels(1001, 1000),
+            Err(MemoryError::VoxelsExceedMemory { needed: 1001, available: 1000 })
+        );
     }
 
     #[test]

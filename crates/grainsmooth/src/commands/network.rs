@@ -79,8 +79,9 @@ impl Files {
         stages
     }
 
-    /// Checks that there is room for what is known to be large.
+    /// Checks that there is space for what is known to be large.
     fn check_space(&self, config: &Config) -> Result<(), Error> {
+        self.result.check_voxels()?;
         self.result.outputs.iter().try_for_each(|output| output.check_space(config))
     }
 
@@ -125,6 +126,7 @@ fn compute(config: &Config, files: &Files, progress: Progress<'_>) -> Result<Str
     }
     check_expected_size(config)?;
     let tessellated = tessellate(config, progress)?;
+    Estimate::new(config, &tessellated, &files.result.formats()).check()?;
     let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
     let mut added = Ok(());
     let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {

@@ -121,10 +121,10 @@ impl ResultFiles {
         let Given { dimension, has_map, has_orientations, has_phases, has_element_size } = given;
         pictures.check_known(path, has_orientations, has_phases)?;
         let file = outputs.options(dimension)?;
-        let (has_voxels, volume) = (file.voxels.is_some(), file.volume);
+        let (voxels, volume) = (file.voxel_count(dimension), file.volume);
         let to_write = ToWrite {
             dimension,
-            has_voxels,
+            voxels,
             has_map,
             has_orientations,
             has_cells: false,
@@ -133,6 +133,7 @@ impl ResultFiles {
         };
         let files = Self::check(outputs, pictures, shared, &to_write, true)?;
         check_all_differ(files.targets())?;
+        files.check_voxels()?;
         Ok((files, file))
     }
 
@@ -174,7 +175,7 @@ impl ResultFiles {
             )));
         }
         if volume.order.is_some() && !self.need_elements() {
-            let without = if to_write.has_voxels { ", without --voxels" } else { "" };
+            let without = if to_write.has_voxels() { ", without --voxels" } else { "" };
             return Err(usage(&format!(
                 "--order needs {elements}; give --volume-mesh -o grains.vtu, or -o grains.inp{without}",
             )));
@@ -191,7 +192,7 @@ impl ResultFiles {
             ("cohesive", volume.cohesive),
             ("solver-deck", volume.solver_deck.is_some()),
         ] {
-            if is_asked && (!has_inp || self.to_write.has_voxels) {
+            if is_asked && (!has_inp || self.to_write.has_voxels()) {
                 return Err(usage(&format!(
                     "--{name} needs {elements} in .inp; give -o grains.inp without --voxels, or leave it out"
                 )));
@@ -243,6 +244,11 @@ impl ResultFiles {
         let paths = outputs.chain(deck).chain(printed).chain(grains).chain(picture).chain(report);
         let paths = paths.chain(statistics);
         paths.map(Path::to_owned).collect()
+    }
+
+    /// Checks that there is memory for the voxels of each file.
+    pub fn check_voxels(&self) -> Result<(), Error> {
+        self.formats().into_iter().try_for_each(|format| format.check_voxels(&self.to_write))
     }
 
     /// The formats of the network.

@@ -108,9 +108,7 @@ impl Config {
 
     /// Number of voxels that are asked for.
     pub(crate) fn voxel_count(&self) -> u128 {
-        let axes = usize::from(self.dimension.axes());
-        let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
-        counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
+        self.file.voxel_count(self.dimension)
     }
 
     /// Bytes of a voxel in VTK's ImageData: its grain, its phase where there are some, and three colours where grains have orientations.

@@ -4,6 +4,7 @@ use std::num::NonZeroU32;
 
 use clap::Args;
 use serde::Serialize;
+use voronoi::Dimension;
 
 use super::spelling::{as_true, is_usual};
 use super::volume_mesh::VolumeMeshOptions;
@@ -46,6 +47,15 @@ pub struct FileOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub volume: VolumeMeshOptions,
+}
+
+impl FileOptions {
+    /// Number of voxels that are asked for; 0 where none are.
+    pub fn voxel_count(&self, dimension: Dimension) -> u128 {
+        let axes = usize::from(dimension.axes());
+        let counts = self.voxels.iter().flat_map(|counts| &counts[..axes]);
+        counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
+    }
 }
 
 /// How an STL file spells its numbers.

@@ -16,7 +16,8 @@ pub(super) const FORMAT: Format = Format {
     content: Content::Voxels(|_| BYTES),
     bytes: |size| HEAD + u128::from(BYTES) * size.voxels(),
     write: Writer::File(write),
-    extra: Extra { programs: "DREAM.3D", ..Extra::NONE },
+    // HDF5 files are complete in memory before they are written.
+    extra: Extra { programs: "DREAM.3D", memory_of_voxel: 40, ..Extra::NONE },
 };
 
 /// Of a voxel: its feature, its phase and three angles.

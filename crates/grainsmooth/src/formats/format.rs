@@ -38,10 +38,13 @@ pub(super) struct Extra {
     pub(super) beside: Option<Beside>,
     /// Writes a grain's closed surface, where the format is for such files.
     pub(super) write_grain: Option<GrainWriter>,
+    /// Bytes of memory for each voxel, where a file of voxels needs all at once; 0 where they are written slab by slab.
+    pub(super) memory_of_voxel: u128,
 }
 
 impl Extra {
-    pub(super) const NONE: Self = Self { programs: "", dimension: None, beside: None, write_grain: None };
+    pub(super) const NONE: Self =
+        Self { programs: "", dimension: None, beside: None, write_grain: None, memory_of_voxel: 0 };
 }
 
 /// What a format holds.

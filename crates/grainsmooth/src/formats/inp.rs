@@ -24,7 +24,8 @@ pub(super) const FORMAT: Format = Format {
         voxels => HEAD + (TEXT_POINT + 3 * TEXT_CORNERS) * voxels,
     },
     write: Writer::File(write),
-    extra: Extra { programs: "Abaqus, CalculiX", ..Extra::NONE },
+    // All that are in a grain stand in one set.
+    extra: Extra { programs: "Abaqus, CalculiX", memory_of_voxel: 16, ..Extra::NONE },
 };
 
 /// Most numbers in a line of a set.
@@ -91,8 +92,11 @@ fn number(number: f64) -> String {
 
 /// Writes numbers that count from 0 as they count from 1.
 fn write_numbers(numbers: impl Iterator<Item = usize>, out: &mut dyn Write) -> io::Result<()> {
-    let numbers: Vec<String> = numbers.map(|number| (number + 1).to_string()).collect();
-    numbers.chunks(OF_LINE).try_for_each(|line| writeln!(out, "{}", line.join(", ")))
+    let mut numbers = numbers.map(|number| (number + 1).to_string()).peekable();
+    while numbers.peek().is_some() {
+        writeln!(out, "{}", numbers.by_ref().take(OF_LINE).collect::<Vec<_>>().join(", "))?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

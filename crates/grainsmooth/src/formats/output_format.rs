@@ -9,6 +9,7 @@ use super::format::{Beside, Content, FileSize, Format, GrainWriter, Writer};
 use crate::config::Config;
 use crate::config::volume_mesh::VolumeMeshOptions;
 use crate::error::Error;
+use crate::memory::{available_memory, check_voxels};
 
 /// A file format that results are written in.
 #[derive(Clone, Copy)]
@@ -102,9 +103,9 @@ impl OutputFormat {
     pub fn needs_elements(self, to_write: &ToWrite) -> bool {
         match self.0.content {
             Content::Elements => true,
-            Content::ElementsOrVoxels => !to_write.has_voxels,
+            Content::ElementsOrVoxels => !to_write.has_voxels(),
             Content::BoundariesOrElements => to_write.volume.volume_mesh,
-            Content::BoundariesElementsOrVoxels => to_write.volume.volume_mesh && !to_write.has_voxels,
+            Content::BoundariesElementsOrVoxels => to_write.volume.volume_mesh && !to_write.has_voxels(),
             Content::Boundaries
             | Content::Cells
             | Content::Voxels(_)
@@ -115,7 +116,7 @@ impl OutputFormat {
 
     /// Whether a file of the format holds voxels as elements where otherwise it would hold boundaries.
     pub fn needs_voxel_elements(self, to_write: &ToWrite) -> bool {
-        let is_asked = to_write.volume.volume_mesh && to_write.has_voxels;
+        let is_asked = to_write.volume.volume_mesh && to_write.has_voxels();
         is_asked && matches!(self.0.content, Content::BoundariesElementsOrVoxels)
     }
 
@@ -155,6 +156,23 @@ impl OutputFormat {
         }
     }
 
+    /// Bytes of memory that voxels take while a file is written, besides a slab of them.
+    pub(crate) fn memory_of_voxels(self, to_write: &ToWrite) -> u128 {
+        let is_of_voxels = match self.0.content {
+            Content::Voxels(_) | Content::ElementsOrVoxels => true,
+            _ => self.needs_voxel_elements(to_write),
+        };
+        if is_of_voxels { to_write.voxels.saturating_mul(self.0.extra.memory_of_voxel) } else { 0 }
+    }
+
+    /// Checks that there is memory for the voxels of a file.
+    ///
+    /// # Errors
+    /// [`VoxelsExceedMemory`](crate::memory::MemoryError::VoxelsExceedMemory).
+    pub fn check_voxels(self, to_write: &ToWrite) -> Result<(), Error> {
+        Ok(check_voxels(self.memory_of_voxels(to_write), available_memory())?)
+    }
+
     pub(super) fn writer(self) -> Writer {
         self.0.write
     }
@@ -169,7 +187,7 @@ impl OutputFormat {
     /// [`Error::FormatDimension`]; [`Error::NoElementSize`] for triangles that fill grains in the plane, when elements have no size; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
     /// of orientations where grains have none; [`Error::CellsOfGrains`] for one of cells where grains are none.
     pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
-        let ToWrite { dimension, has_voxels, has_map, has_orientations, has_cells, .. } = *to_write;
+        let ToWrite { dimension, has_map, has_orientations, has_cells, .. } = *to_write;
         let path = || path.to_owned();
         let needs_elements = self.needs_elements(to_write);
         match (self.0.extra.dimension, self.0.content) {
@@ -179,7 +197,9 @@ impl OutputFormat {
             (Some(only), _) if only != dimension && !needs_elements => {
                 Err(Error::FormatDimension { path: path(), dimension: only })
             }
-            (_, Content::Voxels(_)) if !has_voxels && !has_map => Err(Error::NoVoxels { path: path() }),
+            (_, Content::Voxels(_)) if !to_write.has_voxels() && !has_map => {
+                Err(Error::NoVoxels { path: path() })
+            }
             (_, Content::Orientations) if !has_orientations => Err(Error::NoTexture { path: path() }),
             (_, Content::Cells) if !has_cells => Err(Error::CellsOfGrains { path: path() }),
             _ => Ok(()),
@@ -192,8 +212,8 @@ impl OutputFormat {
 pub struct ToWrite {
     /// The dimension of the grains.
     pub dimension: Dimension,
-    /// Whether the number of voxels is given.
-    pub has_voxels: bool,
+    /// The number of voxels that is given; 0 where none is.
+    pub voxels: u128,
     /// Whether grains come from a map, whose voxels are taken where their number is not given.
     pub has_map: bool,
     /// Whether grains have orientations.
@@ -206,12 +226,19 @@ pub struct ToWrite {
     pub volume: VolumeMeshOptions,
 }
 
+impl ToWrite {
+    /// Whether the number of voxels is given.
+    pub fn has_voxels(&self) -> bool {
+        self.voxels > 0
+    }
+}
+
 impl Config {
     /// What this makes.
     pub fn to_write(&self) -> ToWrite {
         ToWrite {
             dimension: self.dimension,
-            has_voxels: self.file.voxels.is_some(),
+            voxels: self.voxel_count(),
             has_map: false,
             has_orientations: self.has_texture(),
             has_cells: !self.has_grains_of_several_cells(),

@@ -17,7 +17,7 @@ impl Polycrystal {
     pub fn to_write(&self) -> ToWrite {
         ToWrite {
             dimension: self.dimension(),
-            has_voxels: self.file().voxels.is_some(),
+            voxels: self.file().voxel_count(self.dimension()),
             has_map: self.voxels_of_map().is_some(),
             has_orientations: self.grains().texture.is_some(),
             has_cells: self.synthesis().is_some_and(|made| !made.config.has_grains_of_several_cells()),
@@ -36,7 +36,7 @@ impl Polycrystal {
     /// point array `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_holds`].
+    /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_holds`] and [`OutputFormat::check_voxels`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
         write_together(|files| self.stage(output, files))
     }
@@ -44,9 +44,11 @@ impl Polycrystal {
     /// Completes an output, as one of several that appear together.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_holds`].
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_holds`] and [`OutputFormat::check_voxels`].
     pub fn stage(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
-        output.check_holds(&self.to_write())?;
+        let to_write = self.to_write();
+        output.check_holds(&to_write)?;
+        output.format().check_voxels(&to_write)?;
         match output.format().writer() {
             Writer::File(write) => output.stage(files, |out| write(self, out)),
             Writer::Files(stage) => stage(self, &output.as_format(()), files),

@@ -1,6 +1,6 @@
 //! What closes grains where the box's planes cut them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 use spade::handles::{FixedVertexHandle, InnerTag};
@@ -25,6 +25,9 @@ pub(crate) fn caps(pieces: &mut Pieces, only_grain: Option<Side>) -> Result<Vec<
     let is_plane = pieces.domain.dimension() == Dimension::Two;
     // The corners of a box that is periodic along all its axes are one point.
     let origin = (axes.len() == if is_plane { 2 } else { 3 }).then(|| pieces.origin());
+    if !is_plane {
+        divide_rims(pieces);
+    }
     let mut caps = Vec::new();
     for axis in axes {
         if is_plane {
@@ -147,8 +150,8 @@ fn caps_of_plane(
     // What lies on the left of each edge, seen from above: at the lower wall and at the upper one.
     let mut left_of = [Lefts::default(), Lefts::default()];
     let mut edges = Vec::new();
-    for piece @ Piece { corners, sides: [first, second], .. } in &pieces.pieces {
-        let along = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]);
+    for piece @ Piece { sides: [first, second], .. } in &pieces.pieces {
+        let along = edges_of(piece);
         if pieces.is_within(piece, axis) {
             let crossed = along.clone().map(|ends| ends.map(position)).map(|[p, q]| p.x * q.y - q.x * p.y);
             let is_upward = crossed.sum::<f64>() > 0.0;
@@ -253,8 +256,63 @@ fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicVertex; 2], axis: usiz
     leg.normalize_or_zero().dot(left)
 }
 
+/// Divides the edges of the box into steps that are no longer than edges of boundaries on the mean. Boundaries may come near them where none meets them.
+fn divide_rims(pieces: &mut Pieces) {
+    let length = mean_edge_length(pieces);
+    for [axis, across, along] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+        if ![axis, across].iter().all(|axis| pieces.domain.periodic().test(*axis)) {
+            continue;
+        }
+        let is_on_edge = |corner: &PeriodicVertex| {
+            let planes = pieces.planes[corner.vertex as usize];
+            planes[axis] && planes[across]
+        };
+        // Steps along which a boundary lies, which has its own triangles there.
+        let mut taken: HashSet<[u32; 2]> = HashSet::new();
+        for [from, to] in pieces.pieces.iter().flat_map(edges_of) {
+            if is_on_edge(&from) && is_on_edge(&to) {
+                taken.extend([[from.vertex, to.vertex], [to.vertex, from.vertex]]);
+            }
+        }
+        for ends in rim(pieces, [axis, across], along).windows(2) {
+            if taken.contains(&[ends[0].vertex, ends[1].vertex]) {
+                continue;
+            }
+            let [from, to] = [ends[0], ends[1]].map(|end| pieces.position(end));
+            let (step, count) = (to[along] - from[along], ((to[along] - from[along]) / length).ceil());
+            let shares = (1..).map(|number| f64::from(number) / count).take_while(|share| *share < 1.0);
+            for share in shares {
+                let mut position = from;
+                position[along] += share * step;
+                pieces.add(position, [0, 1, 2].map(|other| other != along));
+            }
+        }
+    }
+}
+
+fn mean_edge_length(pieces: &Pieces) -> f64 {
+    let ends = pieces.pieces.iter().flat_map(edges_of);
+    let lengths = ends.map(|[from, to]| pieces.position(from).distance(pieces.position(to)));
+    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
+    sum / count
+}
+
+fn edges_of(piece: &Piece) -> impl Iterator<Item = [PeriodicVertex; 2]> + Clone + '_ {
+    let corners = &piece.corners;
+    corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to])
+}
+
 /// The edges of the lower wall across the first of two axes that lie on walls across the second, below and above.
 fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[PeriodicVertex; 2]> {
+    let mut up = Translation::ZERO;
+    up.0[across] = 1;
+    let line = rim(pieces, [axis, across], along);
+    let pairs = line.windows(2).map(|pair| [pair[0], pair[1]]);
+    pairs.flat_map(|ends| [ends, ends.map(|end| end.moved(up))]).collect()
+}
+
+/// The points along the edge of the box between the lower walls across two axes, from end to end.
+fn rim(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<PeriodicVertex> {
     let on_edge = (0u32..).zip(&pieces.planes).filter(|(_, planes)| planes[axis] && planes[across]);
     let height = |point: &u32| pieces.positions[*point as usize][along];
     let mut points: Vec<u32> = on_edge.map(|(point, _)| point).collect();
@@ -270,10 +328,7 @@ fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[Perio
     if pieces.planes[first.vertex as usize][along] {
         line.push(first.moved(far));
     }
-    let mut up = Translation::ZERO;
-    up.0[across] = 1;
-    let pairs = line.windows(2).map(|pair| [pair[0], pair[1]]);
-    pairs.flat_map(|ends| [ends, ends.map(|end| end.moved(up))]).collect()
+    line
 }
 
 /// What a wall that no boundary meets near a place belongs to: the side, toward the wall, of the first piece across it from there.

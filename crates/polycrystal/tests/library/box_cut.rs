@@ -221,6 +221,27 @@ fn least_sine(network: &Network, points: &[DVec3], axis: usize) -> f64 {
     sines.fold(1.0, f64::min)
 }
 
+/// Boundaries near an edge of the box that none meets there would have narrow triangles beside its long steps.
+#[test]
+fn edges_of_the_box_have_steps_as_short_as_those_of_boundaries() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    for (count, random_seed) in [(3, 1), (20, 2)] {
+        let (network, points) = relaxed(&domain, &random_seeds(&domain, count, random_seed));
+        let BoxCut { points: cut_points, .. } = network.cut_at_box(&points, false).expect("is cut");
+        for along in 0..3 {
+            let others = [(along + 1) % 3, (along + 2) % 3];
+            let on_edge = cut_points.iter().filter(|point| others.iter().all(|other| point[*other] == 0.0));
+            let mut places: Vec<f64> = on_edge.map(|point| point[along]).collect();
+            places.sort_by(f64::total_cmp);
+            assert!(places[0] == 0.0 && places[places.len() - 1] == 1.0, "{places:?}");
+            let longest = places.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
+            // Edges of boundaries become shorter where planes cut them.
+            let length = network.mean_edge_length(&points);
+            assert!(longest <= 1.1 * length, "{count} grains: {longest} beside {length}");
+        }
+    }
+}
+
 #[test]
 fn planes_meet_moved_networks_steeply() {
     let domain = cuboid().with_periods(BVec3::new(true, false, true));
