@@ -100,9 +100,10 @@ fn higher_order_junctions_are_told_apart() {
     }
     assert_eq!(topology["lines_by_boundaries"], serde_json::to_value(&by_boundaries).unwrap());
     let counted = |counts: &BTreeMap<String, u64>, what: &str| {
-        let counts: Vec<String> =
+        let mut counts: Vec<String> =
             counts.iter().map(|(number, count)| format!("{count} of {number}")).collect();
-        format!("({})", counts.join(", ").replacen(", ", &format!(" {what}, "), 1))
+        counts[0] += &format!(" {what}");
+        format!("({})", counts.join(", "))
     };
     let line = said.lines().find(|line| line.starts_with("junctions ")).unwrap();
     assert!(line.contains(&counted(&by_grains, "grains")), "{line}");

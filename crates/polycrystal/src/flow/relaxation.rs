@@ -16,7 +16,7 @@ const LEAST_GRAIN: f64 = 1e-3;
 pub enum Relaxation {
     /// For a time under curvature flow with unit mobility, in units of the mean grain size squared; 0 leaves boundaries flat.
     Time(f64),
-    /// Until a step of time 0.1 (in the plane: 0.3) lessens the area by no more than [`Relaxation::LEAST_GAIN`] of it, or the residual of
+    /// Until a step of time 0.03 (in the plane: 0.3) lessens the area by no more than [`Relaxation::LEAST_GAIN`] of it, or the residual of
     /// Herring's condition has not fallen, by three hundredths, for three steps. The step at which it was least is the result.
     ///
     /// [`relax`](crate::relax()) lets no boundary vanish on the way and no neighbours switch, so this is the least area of this topology: where
@@ -26,7 +26,7 @@ pub enum Relaxation {
 
 impl Relaxation {
     /// Change of area with a step, as a share of the area, that counts as equilibrium.
-    pub const LEAST_GAIN: f64 = 3e-6;
+    pub const LEAST_GAIN: f64 = 1e-6;
 
     /// The usual time where the topology may change: eight steps with a look at what is short after each. The angles of random Voronoi
     /// grains spread by 5 degrees instead of 24, and one point in two hundred joins more than four.
