@@ -24,9 +24,9 @@ const BEYOND: [&str; 3] = [
     "DuplicateSeeds",
 ];
 
-/// Those of which the remedy is not tried here. Tests of their own try numbers in a message, files that are no text and read-only ones;
+/// Those of which the remedy is not tried here. Tests of their own try numbers in a message, short lines, files that are no text and read-only ones;
 /// those of a map of other crystals, and of sections that share no place, are not tried. Those of most maps are in `map_remedies`.
-const NOT_HERE: [&str; 13] = [
+const NOT_HERE: [&str; 14] = [
     "LevelsExceedMemory",
     // Without relaxation grains have no places.
     "NoPlace",
@@ -34,6 +34,7 @@ const NOT_HERE: [&str; 13] = [
     "NoRoomAround",
     "TextureSymmetry",
     "KeptShortLines",
+    "LineTooShort",
     // Such runs take half a minute.
     "TinyGrain",
     "GrainVanished",

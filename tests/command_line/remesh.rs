@@ -158,6 +158,25 @@ fn short_lines_are_kept_where_they_cannot_become_points() {
     workplace.run(&format!("{network} --small-features keep"));
 }
 
+/// Elements once grew from lines of 1e-11 in seventy rings, which took minutes.
+#[test]
+fn lines_too_short_for_elements_are_refused_with_the_remedy() {
+    let workplace = Workplace::new();
+    let shift = |k: u32| 1e-11 * f64::from(k * k % 7);
+    let seed = |k: u32| {
+        let [x, y, z] =
+            [k / 4, k / 2 % 2, k % 2].map(|place| 0.25 + 0.5 * f64::from(place) + shift(k + place));
+        format!("{x} {y} {z}\n")
+    };
+    workplace.put("seeds.txt", (0..8).map(seed).collect::<String>().into_bytes());
+    let network = "--seeds-file seeds.txt -n 1 --elements-per-grain 2 -o a.vtp";
+    let message = "a triple line is only ... long: elements beside it would be a millionth of 0.310 and less, too small for any solver; relax it without --relax 0 and --regularize 0, or merge short lines with --small-features merge";
+    for kept in ["--relax 0", "--regularize 0 --relax 0.01"] {
+        workplace.refuses(&format!("{network} {kept}"), FAILED, message);
+    }
+    workplace.run(network);
+}
+
 #[test]
 fn equations_are_for_networks_that_repeat() {
     let workplace = Workplace::new();

@@ -76,6 +76,7 @@ pub const REFUSALS: &[Kind] = &[
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),
     ("CoarseReference", &["elements of", "need a finer surface", "give -n"]),
+    ("LineTooShort", &["a triple line is only", "without --relax 0 and --regularize 0"]),
     ("ElementsWithoutSize", &["changes sizes of elements", "--elements-per-grain"]),
     ("TrianglesWithoutSize", &["needs triangles, which have a size in 2D", "give --elements-per-grain"]),
     ("PlaneStateInSpace", &["--plane-state is for elements in 2D", "give --dim 2"]),

@@ -68,7 +68,7 @@ fn rows() -> Vec<Row> {
         row("no widening", |tuning| tuning.widening = 0.0),
         row("level 0 only", |tuning| tuning.finest_moved = 0),
         row("fine steps 3", |tuning| tuning.fine_steps = 3),
-        row("fine steps 6", |tuning| tuning.fine_steps = 12),
+        row("fine steps 6", |tuning| tuning.fine_steps = 6),
         row("tolerance 1e-2", |tuning| tuning.tolerance = 1e-2),
         row("tolerance 1e-1", |tuning| tuning.tolerance = 1e-1),
         row("cotangent 5", |tuning| tuning.largest_cotangent = 5.0),

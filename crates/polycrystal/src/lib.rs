@@ -61,8 +61,8 @@ pub use growth::{GrownCells, GrowthRecipe, Vanished, grow_cells};
 pub use measures::{
     BoundaryDistances, BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures,
     PlaneGrainMeasures, PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures,
-    TripleLineMeasures, TriplePointMeasures, angles_between_boundaries, dihedral_angles, herring_residual,
-    measure, measure_network, point_curvatures, point_dihedral_angles,
+    TripleLineMeasures, TriplePointMeasures, angles_between_boundaries, angles_between_cells,
+    dihedral_angles, herring_residual, measure, measure_network, point_curvatures, point_dihedral_angles,
 };
 pub use mesh::angles::{AngleStatistics, WeightedAngle};
 pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};

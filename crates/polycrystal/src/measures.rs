@@ -1,6 +1,7 @@
 //! Measures of the grains, boundaries, triple lines and quadruple points of a network.
 
 pub(crate) mod boundary_distances;
+pub(crate) mod cells;
 pub(crate) mod complex;
 pub(crate) mod curvatures;
 pub(crate) mod dihedral;
@@ -12,6 +13,7 @@ pub(crate) mod space;
 use glam::DVec3;
 
 pub use boundary_distances::BoundaryDistances;
+pub use cells::angles_between_cells;
 pub use curvatures::{PointCurvature, point_curvatures};
 pub use dihedral::{angles_between_boundaries, dihedral_angles};
 pub use herring::{HerringResidual, herring_residual};

@@ -113,7 +113,7 @@ impl Network {
     /// ```
     ///
     /// # Errors
-    /// [`NetworkError::BadElementSize`]; [`NetworkError::LinesCross`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
+    /// [`NetworkError::BadElementSize`]; [`NetworkError::LineTooShort`] in space, and [`NetworkError::LinesCross`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
     /// [`NetworkError::RemeshInvalid`] with what the certificate finds where smaller elements did not help.
     ///
     /// # Panics
@@ -183,6 +183,7 @@ impl Network {
             if size.merges_short_lines {
                 around.short = ShortLines::new(self, &around, sides, tuning.short_line * size.length, halved);
             }
+            around.check_lines(size, tuning)?;
             let sizes = SizeField::new(&around, size, halved, tuning);
             let lines = divide_lines(&around, &sizes);
             let numbering = Numbering::new(&around, &lines);
@@ -206,12 +207,13 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex.
     pub fn mean_edge_length(&self, points: &[DVec3]) -> f64 {
-        mean_edge_length(&self.finest_level(), points)
+        self.finest_level().mesh.mean_edge_length(points)
     }
 
     /// The coarsest level with edges that are short enough for elements of a size, at the points of the finest one; the finest if there is none.
     fn reference_level(&self, points: &[DVec3], size: f64, tuning: &RemeshTuning) -> Cow<'_, Level> {
-        let is_fine = |level: &&Level| mean_edge_length(level, points) <= tuning.longest_of_reference * size;
+        let is_fine =
+            |level: &&Level| level.mesh.mean_edge_length(points) <= tuning.longest_of_reference * size;
         self.levels().iter().find(is_fine).map_or_else(|| self.finest_level(), Cow::Borrowed)
     }
 }
@@ -264,16 +266,6 @@ fn until_valid(
         places.into_iter().for_each(|place| halve_at(&mut halved, place, size, tuning));
     }
     unreachable!("refinements end")
-}
-
-fn mean_edge_length(level: &Level, points: &[DVec3]) -> f64 {
-    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
-    match &level.mesh {
-        Mesh::Triangles(mesh) => mesh.edges().map(length).sum::<f64>() / mesh.edge_count() as f64,
-        Mesh::Segments(mesh) => {
-            mesh.segments().iter().copied().map(length).sum::<f64>() / mesh.segments().len() as f64
-        }
-    }
 }
 
 /// Makes elements around a place half as large as they were there.

@@ -1,6 +1,7 @@
 //! The certificate of a network: what any surface must be, and the volumes and types that its cells give.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::check::certificate::inspect;
 use crate::mesh::adjacency::Adjacency;
@@ -40,7 +41,7 @@ pub(crate) fn certificate(network: &Network, points: &[DVec3], volumes: &[f64]) 
     let sides = network.sides();
     let surface = Surface::of_level(level, points, &sides);
     let volumes: Vec<(GrainId, f64)> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
-    let points_of_level = || 0..level.vertex_count();
+    let points_of_level = || (0..level.vertex_count()).into_par_iter();
     let node_types: Vec<_> = points_of_level().map(|point| Some(level.node_type(point))).collect();
     let grain_counts: Vec<u8> = points_of_level().map(|point| level.grain_count(point)).collect();
     let originals = network.domain().is_periodic().then(|| level.originals());

@@ -4,8 +4,8 @@ use glam::DVec3;
 use polycrystal::{
     AngleStatistics, Attempt, Boundary, Certificate, Certified, Collapsed, GrowthRecipe, Junctions, MeshSize,
     Network, NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells,
-    Vanished, Volumes, WeightedAngle, angles_between_boundaries, grow_cells, regular_cells, relax_cells,
-    relax_certified, remove_short_edges,
+    Vanished, Volumes, WeightedAngle, angles_between_boundaries, angles_between_cells, grow_cells,
+    regular_cells, relax_cells, relax_certified, remove_short_edges,
 };
 use voronoi::{Dimension, Tessellation};
 
@@ -285,13 +285,22 @@ fn smooth_regularized(
     })
 }
 
-/// As of [`flat_angles`], of a network that is not needed for anything else.
+/// As of [`flat_angles`], of cells whose flat network is not needed for anything else.
 fn angles_of_cells(
     tessellation: &Tessellation,
     junctions: Junctions,
 ) -> Result<(Vec<WeightedAngle>, Option<AngleStatistics>), NetworkError> {
-    let (of_cells, flat) = Network::new(tessellation, junctions, 0)?;
-    Ok(flat_angles(&of_cells, &flat))
+    match tessellation.domain().dimension() {
+        Dimension::Three => {
+            let angles = angles_between_cells(tessellation);
+            let statistics = AngleStatistics::of(angles.iter().copied());
+            Ok((angles, statistics))
+        }
+        Dimension::Two => {
+            let (of_cells, flat) = Network::new(tessellation, junctions, 0)?;
+            Ok(flat_angles(&of_cells, &flat))
+        }
+    }
 }
 
 /// Angles between boundaries of flat cells, and their statistics.
@@ -315,22 +324,15 @@ fn smooth_by_energy(
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let mobility = |boundary: &Boundary| law.mobility(boundary);
-    let mut flat_angles = Ok(Default::default());
-    let relaxed_cells = rayon::in_place_scope(|scope| {
-        // On a thread that relaxation leaves idle.
-        scope.spawn(|_| flat_angles = angles_of_cells(tessellation, junctions));
-        clock.time(Stage::Relaxation, || match config.effective_relaxation() {
-            Relaxation::Time(time) if config.lets_grains_vanish() => {
-                let recipe = GrowthRecipe { network: recipe, mobility: &mobility };
-                grow_cells(tessellation, &recipe, time, watch).map(|grown| (grown.cells, grown.vanished))
-            }
-            relaxation => {
-                relax_cells(tessellation, &recipe, &relaxation, watch).map(|cells| (cells, Vec::new()))
-            }
-        })
+    let (flat_angles, angles_before) = angles_of_cells(tessellation, junctions)?;
+    let relaxed_cells = clock.time(Stage::Relaxation, || match config.effective_relaxation() {
+        Relaxation::Time(time) if config.lets_grains_vanish() => {
+            let recipe = GrowthRecipe { network: recipe, mobility: &mobility };
+            grow_cells(tessellation, &recipe, time, watch).map(|grown| (grown.cells, grown.vanished))
+        }
+        relaxation => relax_cells(tessellation, &recipe, &relaxation, watch).map(|cells| (cells, Vec::new())),
     });
     let (relaxed_cells, vanished) = relaxed_cells?;
-    let (flat_angles, angles_before) = flat_angles?;
     let RelaxedCells {
         network,
         relaxed,

@@ -74,8 +74,7 @@ impl Fans {
     /// The fans of a complex whose boundaries have these tensions.
     pub(crate) fn new(complex: &CellComplex, tension: &(dyn Fn(&Boundary) -> f64 + Sync)) -> Self {
         let domain = complex.domain().clone();
-        let faces = complex.faces();
-        let lines = complex.edges();
+        let (faces, lines) = rayon::join(|| complex.faces(), || complex.edges());
         let vertex_count = complex.vertices.len();
         let mut starts = vec![0];
         for face in &faces {
@@ -98,9 +97,9 @@ impl Fans {
             slots[2 * corners.len()] = slot(vertex_count + lines.len() + fan, Translation::ZERO);
         };
         split(&mut slots, &starts).into_par_iter().enumerate().with_min_len(FANS_PER_TASK).for_each(fill);
-        let sides: Vec<[Side; 2]> = faces.iter().map(|face| complex.sides(*face)).collect();
+        let sides: Vec<[Side; 2]> = faces.par_iter().map(|face| complex.sides(*face)).collect();
         let point_count = vertex_count + lines.len() + faces.len();
-        let of_point = {
+        let of_point = || {
             let of_fan =
                 (0..faces.len()).flat_map(|fan| (starts[fan]..starts[fan + 1]).map(move |slot| (fan, slot)));
             let pairs = of_fan.map(|(fan, slot)| (slots[slot].point as usize, [id(fan), id(slot)]));
@@ -112,7 +111,8 @@ impl Fans {
             let boundary = boundary(*sides);
             tension(&boundary) + of_wall(&boundary)
         };
-        let tensions = sides.par_iter().map(of_sides).collect();
+        let tensions = || sides.par_iter().map(of_sides).collect();
+        let (of_point, tensions) = rayon::join(of_point, tensions);
         Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
     }
 

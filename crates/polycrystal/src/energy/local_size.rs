@@ -4,10 +4,12 @@
 //! thousandth of it across, whatever solves it. So what is around small grains flows slower, as if in its own units of length: mass
 //! grows as one over the square of the size, and lengths that count as short shrink with it.
 
+use rayon::prelude::*;
 use voronoi::Dimension;
 
 use crate::energy::patches::Patches;
 use crate::energy::sides::cell_and_offset;
+use crate::mesh::id::id;
 use crate::{Boundary, CellComplex, Network, Volumes};
 
 /// Sizes of grains, in units of a share of the mean, at most 1.
@@ -45,22 +47,20 @@ impl LocalSize {
         volumes: Volumes,
     ) -> Vec<f64> {
         let level = &network.levels()[level];
-        let mut sizes = vec![1.0f64; level.vertex_count()];
         if volumes == Volumes::Free {
-            return sizes;
+            return vec![1.0; level.vertex_count()];
         }
         let of_grain: Vec<f64> =
             network.cell_volumes().iter().map(|volume| self.of_volume(*volume)).collect();
         let of_boundary = |boundary: &Boundary| {
             boundary.signed_grains().map(|(grain, _)| of_grain[grain.index()]).fold(1.0, f64::min)
         };
-        for (boundary, patch) in network.boundaries().iter().zip(&patches.patches) {
-            let smallest = of_boundary(boundary);
-            for point in &patch.control_points {
-                let size = &mut sizes[*point as usize];
-                *size = size.min(smallest);
-            }
-        }
+        let of_boundaries: Vec<f64> = network.boundaries().iter().map(of_boundary).collect();
+        let at_point = |point: u32| {
+            let places = patches.places_of_point(point).iter();
+            places.map(|place| of_boundaries[patches.patch_of_place(*place)]).fold(1.0, f64::min)
+        };
+        let mut sizes: Vec<f64> = (0..id(level.vertex_count())).into_par_iter().map(at_point).collect();
         // What is a copy has around it what its original has.
         for pair in &level.copies.vertices {
             sizes[pair.primary as usize] = sizes[pair.primary as usize].min(sizes[pair.secondary as usize]);

@@ -90,19 +90,26 @@ impl Patches {
         let first_places = starts(|patch| patch.control_points.len());
         let first_edges = starts(|patch| patch.edges.len());
         let point_count = control_level.vertex_count();
-        let points = patches.iter().flat_map(|patch| &patch.control_points);
-        let places =
-            Grouped::new(point_count, points.zip(0u32..).map(|(point, place)| (*point as usize, place)));
-        let links = patches.iter().flat_map(|patch| {
-            patch.edges.iter().map(|ends| ends.map(|end| patch.control_points[end as usize]))
-        });
-        let links =
-            links.zip(0u32..).flat_map(|([a, b], edge)| [(a as usize, [b, edge]), (b as usize, [a, edge])]);
-        let links = Grouped::new(point_count, links);
-        let patch_of_place = (0u32..)
-            .zip(&patches)
-            .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
-            .collect();
+        let places = || {
+            let points = patches.iter().flat_map(|patch| &patch.control_points);
+            Grouped::new(point_count, points.zip(0u32..).map(|(point, place)| (*point as usize, place)))
+        };
+        let links = || {
+            let edges = patches.iter().flat_map(|patch| {
+                patch.edges.iter().map(|ends| ends.map(|end| patch.control_points[end as usize]))
+            });
+            let links = edges
+                .zip(0u32..)
+                .flat_map(|([a, b], edge)| [(a as usize, [b, edge]), (b as usize, [a, edge])]);
+            Grouped::new(point_count, links)
+        };
+        let patch_of_place = || {
+            let numbered = (0u32..).zip(&patches);
+            let repeated =
+                numbered.flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()));
+            repeated.collect()
+        };
+        let (links, (places, patch_of_place)) = rayon::join(links, || rayon::join(places, patch_of_place));
         Self { patches, places, patch_of_place, first_places, first_edges, links, largest_cotangent }
     }
 

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::pressure_response::{CHUNK, PressureResponse};
-use crate::flow::system::Parts;
+use crate::flow::system::{Parts, softened};
 use crate::flow::tied_points::Numbering;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::{CsrRows, NewRow, single};
+use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, Level, Network, Volumes};
 
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
@@ -45,15 +45,16 @@ pub(crate) fn assemble(
         }
     };
     let freedoms = freedoms(network, unknowns);
+    let softness_root = softness_root(unknowns, volumes);
     let (stiffness, constraint) = rayon::join(
-        || CsrRows::made_of_sums(groups.group_count(), row, single),
+        || CsrRows::made_of_sums(groups.group_count(), row, softened(&softness_root)),
         || (volumes == Volumes::Kept).then(|| constraint(network, patches, terms, unknowns, &freedoms)),
     );
     Parts {
         masses: masses(patches, terms, unknowns),
         gradient: gradient(patches, terms, groups),
         stiffness,
-        softness: softness(unknowns, volumes),
+        softness_root,
         volumes: constraint,
         freedoms,
         sliding: match volumes {
@@ -85,17 +86,17 @@ fn freedoms(network: &Network, Unknowns { level, groups, .. }: &Unknowns<'_>) ->
     in_chunks(groups).map(freedom).collect()
 }
 
-/// The softness of each group, as of [`Parts`].
-fn softness(Unknowns { level, groups, junction_softness, .. }: &Unknowns<'_>, volumes: Volumes) -> Vec<f64> {
-    let is_junction = |point: &u32| is_junction(level, *point);
-    let of_group = |group: usize| match groups.members(group).iter().any(is_junction) {
-        true => *junction_softness,
-        false => 1.0,
+/// The root of the softness of each group, as of [`Parts`].
+fn softness_root(unknowns: &Unknowns<'_>, volumes: Volumes) -> Vec<f64> {
+    let Unknowns { level, groups, junction_softness, .. } = *unknowns;
+    let of_junction = match volumes {
+        Volumes::Kept => junction_softness.sqrt(),
+        Volumes::Free => 1.0,
     };
-    match volumes {
-        Volumes::Kept => in_chunks(groups).map(of_group).collect(),
-        Volumes::Free => vec![1.0; groups.group_count()],
-    }
+    let is_junction = |point: &u32| is_junction(level, *point);
+    let of_group =
+        |group: usize| if groups.members(group).iter().any(is_junction) { of_junction } else { 1.0 };
+    in_chunks(groups).map(of_group).collect()
 }
 
 /// The mass of each group.

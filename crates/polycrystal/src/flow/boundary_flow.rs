@@ -19,6 +19,7 @@ use crate::check::folds::is_folded;
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
+use crate::flow::pressure_response::CHUNK;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
@@ -102,13 +103,15 @@ impl<'a> Flow<'a> {
     ) -> Self {
         let surface = network.level_count().min(level + 1);
         let groups = TiedPoints::new(&network.levels()[level]);
-        let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
+        let (patches, elements) = rayon::join(
+            || Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent),
+            || LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface))),
+        );
         check_cancelled();
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
         check_cancelled();
-        let elements = LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface)));
         Self { network, patches, sizes, level, surface, elements, groups, volumes, tuning }
     }
 
@@ -249,8 +252,11 @@ impl<'a> Flow<'a> {
         };
         let mut moves = numbering.of_points(&moves);
         check_cancelled();
-        let within = tangential_moves(self.network, self.level, points, self.centering(time));
-        moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
+        let centering = self.centering(time);
+        if centering > 0.0 {
+            let within = tangential_moves(self.network, self.level, &self.patches, points, centering);
+            moves.par_iter_mut().zip(&within).with_min_len(CHUNK).for_each(|(by, within)| *by += *within);
+        }
         let mut after = None;
         let moved = groups.moved_unbroken(
             points,
@@ -325,7 +331,8 @@ impl<'a> Flow<'a> {
     /// small in the network.
     fn feature_size(&self, points: &[DVec3]) -> f64 {
         let usual = 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"));
-        (usual * self.network.feature_size()).min(FEATURE_EDGES * mean_edge(self.control_mesh(), points))
+        (usual * self.network.feature_size())
+            .min(FEATURE_EDGES * self.control_mesh().mean_edge_length(points))
     }
 
     fn finest(&self) -> usize {
@@ -435,19 +442,8 @@ impl<'a> Flow<'a> {
     }
 }
 
-fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
-    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
-    match mesh {
-        Mesh::Triangles(mesh) => mesh.edges().map(length).sum::<f64>() / mesh.edge_count() as f64,
-        Mesh::Segments(mesh) => {
-            let segments = mesh.segments();
-            segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
-        }
-    }
-}
-
 fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
-    points.iter().zip(moves).map(|(point, by)| *point + *by).collect()
+    points.par_iter().zip(moves).with_min_len(CHUNK).map(|(point, by)| *point + *by).collect()
 }
 
 /// The element of the first of some consecutive levels that an element of the level after the last descends from.

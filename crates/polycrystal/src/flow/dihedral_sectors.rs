@@ -28,13 +28,11 @@ struct DihedralSector {
 
 impl DihedralSectors {
     pub(crate) fn new(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Self {
-        let mut dihedral_sectors = Vec::new();
         if let Elements::Segments(_) = surface.elements {
-            return Self { dihedral_sectors };
+            return Self { dihedral_sectors: Vec::new() };
         }
-        let mut incidences: Vec<(Side, &Incidence, i8)> = Vec::new();
-        for edge in adjacency.non_manifold_edges() {
-            incidences.clear();
+        let at_edge = |edge: &[Incidence]| {
+            let mut incidences: Vec<(Side, &Incidence, i8)> = Vec::with_capacity(2 * edge.len());
             for at in edge {
                 let [first, second] = surface.sides_of(at.element);
                 incidences.extend([(first, at, -1), (second, at, 1)]);
@@ -42,12 +40,15 @@ impl DihedralSectors {
             incidences.retain(|(side, ..)| *side != Side::Exterior);
             incidences.sort_unstable_by_key(|(side, at, _)| (*side, **at));
             let pairs = incidences.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
-            dihedral_sectors.extend(pairs.map(|pair| DihedralSector {
+            let sectors = pairs.map(|pair| DihedralSector {
                 elements: [pair[0].1, pair[1].1].map(|at| at.element),
                 edges: [pair[0].1, pair[1].1].map(|at| at.corner),
                 sense: pair[0].2,
-            }));
-        }
+            });
+            sectors.collect::<Vec<_>>()
+        };
+        let edges = adjacency.incidences.par_chunk_by(|a, b| a.edge == b.edge);
+        let mut dihedral_sectors: Vec<DihedralSector> = edges.flat_map_iter(at_edge).collect();
         dihedral_sectors.shrink_to_fit();
         Self { dihedral_sectors }
     }

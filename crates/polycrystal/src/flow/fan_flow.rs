@@ -10,12 +10,12 @@ use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::FREE_TOLERANCE;
 use crate::flow::boundary_flow::SLIGHT_BEND;
 use crate::flow::pressure_response::CHUNK;
-use crate::flow::system::{Parts, System};
+use crate::flow::system::{Parts, System, softened};
 use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::{CsrRows, NewRow, single};
+use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId, NetworkError};
 
 /// Share of its way to the middle of its boundary that a centre goes at a time while grains grow. With 0.3, a network of a few grains ends in one without
@@ -135,24 +135,27 @@ impl FanFlow<'_> {
         let gradient = |point: usize| -> DVec3 {
             fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
         };
-        let softness = |point: usize| match self.motion {
-            // Walls have tension here, so that lines on them are junctions too.
-            Motion::Kept { .. } if point < fans.center_of(0) => self.tuning.junction_softness,
-            Motion::Kept { .. } | Motion::Free { .. } => 1.0,
+        let of_junction = match self.motion {
+            Motion::Kept { .. } => self.tuning.junction_softness.sqrt(),
+            Motion::Free { .. } => 1.0,
         };
+        // Walls have tension here, so that lines on them are junctions too.
+        let softness_root = self.of_points(|point| if point < fans.center_of(0) { of_junction } else { 1.0 });
         let constraint = || match self.motion {
             Motion::Kept { volumes, .. } => {
                 Some(VolumeConstraint::new(freedoms, volumes.len(), rounding, volume_gradients))
             }
             Motion::Free { .. } => None,
         };
-        let (stiffness, volumes) =
-            rayon::join(|| CsrRows::made_of_sums(fans.point_count(), stiffness, single), constraint);
+        let (stiffness, volumes) = rayon::join(
+            || CsrRows::made_of_sums(fans.point_count(), stiffness, softened(&softness_root)),
+            constraint,
+        );
         Parts {
             masses: self.masses(terms),
             gradient: self.of_points(gradient),
             stiffness,
-            softness: self.of_points(softness),
+            softness_root,
             freedoms: freedoms.to_vec(),
             volumes,
             sliding: match self.motion {

@@ -25,11 +25,12 @@ pub(crate) struct Parts {
     pub(crate) masses: Vec<f64>,
     /// The gradient g of the energy.
     pub(crate) gradient: Vec<DVec3>,
-    /// The stiffness K, as stiffness to other unknowns. In single precision: what comes of a step is sought to a hundredth, and its matrix has to
-    /// come through the memory again and again. That of an element without length is the largest such number.
+    /// The stiffness K, as stiffness to other unknowns, softened: divided by the roots of the softness of both. In single precision: what comes
+    /// of a step is sought to a hundredth, and its matrix has to come through the memory again and again. That of an element without length is
+    /// the largest such number.
     pub(crate) stiffness: CsrRows<f32>,
-    /// How many times as soft as K each unknown is: its row and its column are divided by the root of that.
-    pub(crate) softness: Vec<f64>,
+    /// The root of how many times as soft each unknown is as in the cotangent Laplacian.
+    pub(crate) softness_root: Vec<f64>,
     /// What walls leave to each unknown.
     pub(crate) freedoms: Vec<Freedom>,
     /// The gradients J of the volumes; nothing where they are free.
@@ -57,13 +58,14 @@ pub(crate) struct System {
 impl System {
     /// The system of a step of the given time, which is solved up to a share of its first residual.
     pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
-        let Parts { masses, gradient, mut stiffness, softness, freedoms, volumes, sliding } = parts;
+        let Parts { masses, gradient, stiffness, softness_root, freedoms, volumes, sliding } = parts;
         let diagonal = |(unknown, mass): (usize, &f64)| {
-            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, entry)| f64::from(*entry)).sum();
-            mass + time * stiffness / softness[unknown]
+            let row = stiffness.row(unknown).iter();
+            let softened: f64 =
+                row.map(|(other, entry)| f64::from(*entry) * softness_root[*other as usize]).sum();
+            mass + time * softened / softness_root[unknown]
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
-        stiffness.divide(&softness.iter().map(|softness| softness.sqrt()).collect::<Vec<_>>());
         let response = PressureResponse::new(&diagonal, &freedoms, volumes);
         let mut forces = gradient;
         forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
@@ -201,6 +203,15 @@ impl System {
         }
         self.response.hold(image);
         product
+    }
+}
+
+/// Entries of the stiffness of [`Parts`], made of its row, its column and what it is in the cotangent Laplacian.
+#[expect(clippy::cast_possible_truncation, reason = "rounding")]
+pub(crate) fn softened(softness_root: &[f64]) -> impl Fn(usize, u32, f64) -> f32 {
+    |row, column, stiffness| {
+        let softened = stiffness / (softness_root[row] * softness_root[column as usize]);
+        softened.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
     }
 }
 

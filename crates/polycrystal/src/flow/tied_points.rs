@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use subzero::EdgeId;
 
 use crate::energy::patches::Patches;
 use crate::flow::pressure_response::CHUNK;
@@ -43,25 +44,17 @@ impl TiedPoints {
         level: &Level,
         of_point: impl Fn(u32) -> Freedom,
     ) -> Self {
-        let mut left = Self::new(level);
-        let [own, known] = [left.sizes(), before.sizes()];
+        let own = Self::new(level);
+        let mut left = own.clone();
         for group in self.0.of_several() {
-            let was_tied = group.iter().any(|point| known[*point as usize] > own[*point as usize]);
-            let has_grown = was_tied && known[group[0] as usize] < group.len();
+            let parts = before.0.set_count(&group);
+            let has_grown = 1 < parts && parts < own.0.set_count(&group);
             let is_held = matches!(freedom(&group, &of_point), Freedom::Along(_) | Freedom::Nowhere);
             if !(has_grown && is_held) {
                 left.join_all(&group);
             }
         }
         left
-    }
-
-    /// The number of points in the group of each point.
-    fn sizes(&self) -> Vec<usize> {
-        let (numbers, count) = self.0.numbers();
-        let mut sizes = vec![0; count as usize];
-        numbers.iter().for_each(|number| sizes[*number as usize] += 1);
-        numbers.iter().map(|number| sizes[*number as usize]).collect()
     }
 
     /// Makes some control points move as one.
@@ -71,16 +64,18 @@ impl TiedPoints {
 
     /// Joins the ends of all edges of a mesh that are shorter than `length` times the smaller of the sizes at their ends.
     pub(crate) fn join_short_edges(&mut self, mesh: &Mesh, points: &[DVec3], sizes: &[f64], length: f64) {
-        let mut join = |[a, b]: [u32; 2]| {
-            let size = sizes[a as usize].min(sizes[b as usize]);
-            if points[a as usize].distance(points[b as usize]) < length * size {
-                self.0.join(a, b);
-            }
+        let is_short = |[a, b]: &[u32; 2]| {
+            let size = sizes[*a as usize].min(sizes[*b as usize]);
+            points[*a as usize].distance(points[*b as usize]) < length * size
         };
-        match mesh {
-            Mesh::Triangles(mesh) => mesh.edges().for_each(join),
-            Mesh::Segments(mesh) => mesh.segments().iter().for_each(|segment| join(*segment)),
-        }
+        let short: Vec<[u32; 2]> = match mesh {
+            Mesh::Triangles(mesh) => {
+                let edges = (0..mesh.counts().edges).into_par_iter();
+                edges.map(|edge| mesh.edge(EdgeId(edge))).filter(is_short).collect()
+            }
+            Mesh::Segments(mesh) => mesh.segments().iter().copied().filter(is_short).collect(),
+        };
+        short.iter().for_each(|[a, b]| self.0.join(*a, *b));
     }
 
     /// Gives all points of each group the mean of their displacements, for an attempt that is counted from 0.
@@ -159,7 +154,8 @@ impl Numbering {
 
     /// The displacement of each control point, given those of the groups.
     pub(crate) fn of_points(&self, of_groups: &[DVec3]) -> Vec<DVec3> {
-        self.numbers.iter().map(|number| of_groups[*number as usize]).collect()
+        let numbers = self.numbers.par_iter().with_min_len(CHUNK);
+        numbers.map(|number| of_groups[*number as usize]).collect()
     }
 
     /// How the points of a group can move as one, given how each can.

@@ -87,6 +87,11 @@ impl<'a> Complex<'a> {
         self.incidences.chunk_by(|a, b| a.edge == b.edge)
     }
 
+    /// As [`Self::non_manifold_edges`].
+    pub(crate) fn non_manifold_edges_in_parallel(&self) -> impl ParallelIterator<Item = &[Incidence]> {
+        self.incidences.par_chunk_by(|a, b| a.edge == b.edge)
+    }
+
     /// The boundaries that meet at an edge, sorted.
     pub(crate) fn boundaries(&self, at: &[Incidence]) -> Vec<BoundaryId> {
         let mut boundaries: Vec<BoundaryId> = at.iter().map(|at| self.boundary(at)).collect();

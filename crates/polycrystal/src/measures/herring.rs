@@ -1,6 +1,7 @@
 //! How far triple lines are from rest under the tensions that pull at them.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
@@ -32,9 +33,12 @@ pub fn herring_residual(network: &Network, points: &[DVec3]) -> Option<HerringRe
     of_level(network, network.finest(), points, |complex| match complex.surface.elements {
         Elements::Triangles(_) | Elements::Refined(_) => {
             let lines = Lines::of(complex);
-            lines.lines.iter().filter_map(|line| complex.residual_of_line(line)).fold(0.0, f64::max)
+            let residuals = lines.lines.par_iter().filter_map(|line| complex.residual_of_line(line));
+            residuals.reduce(|| 0.0, f64::max)
         }
-        Elements::Segments(_) => complex.residuals().map(|(residual, _)| residual).fold(0.0, f64::max),
+        Elements::Segments(_) => {
+            complex.residuals().into_iter().map(|(residual, _)| residual).fold(0.0, f64::max)
+        }
     })
 }
 
@@ -47,24 +51,25 @@ fn of_level(
     network: &Network,
     level: LevelView<'_>,
     points: &[DVec3],
-    largest: impl FnOnce(&Complex<'_>) -> f64,
+    largest: impl FnOnce(&Complex<'_>) -> f64 + Send,
 ) -> Option<HerringResidual> {
     assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
     let sides = network.sides();
     let complex = Complex::of_level(network, level, &Surface::of_level(level, points, &sides));
+    let (residuals, largest) = rayon::join(|| complex.residuals(), || largest(&complex));
     let (mut squares, mut weights) = (0.0, 0.0);
-    for (residual, weight) in complex.residuals() {
+    for (residual, weight) in residuals {
         squares += weight * residual * residual;
         weights += weight;
     }
-    (weights > 0.0).then(|| HerringResidual { rms: (squares / weights).sqrt(), largest: largest(&complex) })
+    (weights > 0.0).then(|| HerringResidual { rms: (squares / weights).sqrt(), largest })
 }
 
 impl Complex<'_> {
     /// The residuals of all edges where three sides or more meet, with the lengths over which they hold; in the plane 1.
-    fn residuals(&self) -> impl Iterator<Item = (f64, f64)> {
-        let edges = self.non_manifold_edges().filter(|at| at.len() >= 3);
-        edges.filter_map(|at| Some((self.residual(at)?, edge_length(&self.surface, at))))
+    fn residuals(&self) -> Vec<(f64, f64)> {
+        let edges = self.non_manifold_edges_in_parallel().filter(|at| at.len() >= 3);
+        edges.filter_map(|at| Some((self.residual(at)?, edge_length(&self.surface, at)))).collect()
     }
 
     /// The residual of a line, as a mean over its length.

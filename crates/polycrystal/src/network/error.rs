@@ -132,6 +132,16 @@ pub enum NetworkError {
         "with elements of that size the network is invalid: {0}; give another size, or more levels of subdivision"
     )]
     RemeshInvalid(Faults),
+    /// A triple line that elements of the size asked for cannot grow from.
+    #[error(
+        "a triple line is only {length:.1e} long: elements beside it would be a millionth of {size:.3} and less, too small for any solver; relax it without --relax 0 and --regularize 0, or merge short lines with --small-features merge"
+    )]
+    LineTooShort {
+        /// Its length.
+        length: f64,
+        /// The size of elements asked for.
+        size: f64,
+    },
     /// In the plane, lines between which there are no triangles.
     #[error(
         "lines cross, or touch each other between their points, so that no triangles fit between them; give more levels of subdivision"

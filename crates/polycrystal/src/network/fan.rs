@@ -88,14 +88,26 @@ impl Fan {
     /// The triangle with the smallest angle, and that angle's cosine; nothing if the cosine reaches the bound. A triangle that
     /// turns away from the boundary has no angle.
     fn thinnest(&self, bound: f64) -> Option<([u32; 3], f64)> {
+        let largest_bend = LARGEST_BEND * self.normal.length();
         let cosine = |triangle: [u32; 3]| {
             let [a, b, c] = triangle.map(|point| self.points[point as usize]);
-            let normal = (b - a).cross(c - a);
-            if normal.dot(self.normal) < LARGEST_BEND * normal.length() * self.normal.length() {
+            let sides = [b - a, c - b, a - c];
+            let normal = sides[0].cross(sides[1]);
+            if normal.dot(self.normal) < largest_bend * normal.length() {
                 return 1.0;
             }
-            let [ab, bc, ca] = [b - a, c - b, a - c].map(DVec3::normalize_or_zero);
-            (-ab.dot(ca)).max(-bc.dot(ab)).max(-ca.dot(bc)).min(1.0)
+            // The smallest angle is opposite the shortest side.
+            let squares = sides.map(DVec3::length_squared);
+            let [ab, bc, ca] = squares;
+            let shortest = if ab <= bc && ab <= ca {
+                0
+            } else if bc <= ca {
+                1
+            } else {
+                2
+            };
+            let [one, other] = [(shortest + 1) % 3, (shortest + 2) % 3];
+            (-sides[one].dot(sides[other]) / (squares[one] * squares[other]).sqrt()).min(1.0)
         };
         let mut thinnest: Option<([u32; 3], f64)> = None;
         for triangle in self.triangles() {

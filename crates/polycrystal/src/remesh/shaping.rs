@@ -155,13 +155,18 @@ impl<'a> Shaping<'a> {
         })
     }
 
-    /// Moves a point into one of its neighbours, if that makes the least angle around larger. So do those between two lines that are an element and a half apart.
-    fn collapse_to_widen(&mut self, point: u32) -> bool {
+    /// Moves a point into one of its neighbours, if that makes the least angle around larger by so much. So do those between two lines that are an element and a half apart.
+    fn collapse_to_widen(&mut self, point: u32, by: f64) -> bool {
         self.patch.neighbours(point).into_iter().any(|other| {
-            self.collapse([point, other], |shaping, before, after| {
-                shaping.worst_angle(after) > before + BETTER
-            })
+            self.collapse([point, other], |shaping, before, after| shaping.worst_angle(after) > before + by)
         })
+    }
+
+    /// Whether a point has four triangles or fewer, whose other corners are all on lines. Without it there are two, with angles that are as wide if they were those of a rectangle,
+    /// and there is more room between them and a boundary that comes near.
+    fn is_needless(&self, point: u32) -> bool {
+        self.patch.star(point).len() <= 4
+            && self.patch.neighbours(point).into_iter().all(|other| self.patch.is_outline(other))
     }
 
     /// Moves the first end of an edge into the other, or both inside into the middle, if `is_right` says so of the worst angle before and the triangles after.
@@ -170,9 +175,7 @@ impl<'a> Shaping<'a> {
         if !self.patch.pinched(ends).is_empty() {
             return false;
         }
-        // An edge of a triangle that stands alone in a corner keeps it.
-        let across = self.patch.at_edge(ends);
-        if across.len() != 2 || self.patch.star(from).len() <= 3 && self.patch.all().count() <= 3 {
+        if self.patch.at_edge(ends).len() != 2 {
             return false;
         }
         let theirs = self.patch.neighbours(to);
@@ -309,9 +312,13 @@ impl<'a> Shaping<'a> {
                 if !self.patch.is_inside(point) {
                     continue;
                 }
+                if self.is_needless(point) && self.collapse_to_widen(point, -BETTER) {
+                    has_moved = true;
+                    continue;
+                }
                 let star = self.star(point);
                 if self.worst_angle(&star) < good {
-                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point);
+                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point, BETTER);
                 }
             }
             self.flip();
@@ -383,5 +390,29 @@ mod tests {
         let all: Vec<[u32; 3]> = shaping.patch.all().collect();
         assert_eq!(all.len(), 4);
         assert!((shaping.worst_angle(&all) + FRAC_1_SQRT_2).abs() < 1e-12);
+    }
+
+    /// A boundary beside a wall at 12 degrees had tetrahedra as flat as its triangles are low.
+    #[test]
+    fn a_point_among_lines_alone_goes() {
+        let (square, triangle) = (
+            vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]],
+            vec![[0.0, 0.0], [1.0, 0.0], [0.5, 0.8], [0.5, 0.3]],
+        );
+        for (places, left) in [(square, 2), (triangle, 1)] {
+            let points: Vec<DVec3> = places.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
+            let corners = u32::try_from(points.len() - 1).expect("few");
+            let triangles: Vec<[u32; 3]> = (0..corners).map(|k| [k, (k + 1) % corners, corners]).collect();
+            let mut lines: Vec<Vec<u32>> =
+                (0..corners).map(|k| vec![(k + corners - 1) % corners, k]).collect();
+            lines.push(Vec::new());
+            let patch = Patch::new(points.clone(), lines, &triangles);
+            let gradation = Gradation { growth: 0.4, most: 1.0 };
+            let reference = Reference::new(points.clone(), vec![1.0; points.len()], triangles, gradation);
+            let tuning = RemeshTuning::default();
+            let mut shaping = Shaping::new(patch, reference, &vec![0; points.len()], &tuning);
+            shaping.widen();
+            assert_eq!(shaping.patch.all().count(), left);
+        }
     }
 }

@@ -7,7 +7,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{EdgeId, FaceId, TriangleMesh};
 
-use crate::Level;
 use crate::mesh::id::id;
 use crate::remesh::ElementSize;
 use crate::remesh::gradation::Gradation;
@@ -16,6 +15,7 @@ use crate::remesh::short_lines::ShortLines;
 use crate::remesh::skeleton::{Line, Occurrence, Skeleton};
 use crate::remesh::torus::{Moved, Torus};
 use crate::remesh::tuning::RemeshTuning;
+use crate::{Level, NetworkError};
 
 /// The size at each vertex of the finest level; the same at all copies of one.
 pub(crate) struct SizeField {
@@ -40,6 +40,16 @@ impl<'a> Surroundings<'a> {
     /// The lines that do not become points, with their numbers.
     fn lasting_lines(&self) -> impl Iterator<Item = (u32, &'a Line)> + '_ {
         (0u32..).zip(&self.skeleton.lines).filter(|(number, _)| !self.short.has(*number))
+    }
+
+    /// Refuses lines that elements cannot grow from.
+    pub(crate) fn check_lines(&self, asked: &ElementSize, tuning: &RemeshTuning) -> Result<(), NetworkError> {
+        let lengths = self.lasting_lines().map(|(_, line)| line.length(self.points));
+        let length = lengths.fold(f64::INFINITY, f64::min);
+        if length < tuning.shortest_line * asked.length {
+            return Err(NetworkError::LineTooShort { length, size: asked.length });
+        }
+        Ok(())
     }
 
     /// What the vertex at which a line ends is in the new network.

@@ -29,27 +29,30 @@ impl<T> CsrRows<T> {
     where
         T: Copy + Send,
     {
-        Self::made_of_sums(len, fill, |sum| sum)
+        Self::made_of_sums(len, fill, |_, _, sum| sum)
     }
 
-    /// The same from sums of another type, so that rounding does not depend on the order in which they are added up.
+    /// The same from sums of another type, so that rounding does not depend on the order in which they are added up: `value` makes an entry
+    /// of its row, its column and its sum.
     pub(crate) fn made_of_sums<S: Copy>(
         len: usize,
         fill: impl Fn(usize, &mut NewRow<'_, S>) + Sync,
-        value: impl Fn(S) -> T + Sync,
+        value: impl Fn(usize, u32, S) -> T + Sync,
     ) -> Self
     where
         T: Send,
     {
         let block = |block: usize| {
             check_cancelled();
-            let mut sums = Vec::new();
+            let (mut sums, mut entries) = (Vec::new(), Vec::new());
             let mut starts = vec![0];
             for row in block * ROWS_PER_TASK..len.min((block + 1) * ROWS_PER_TASK) {
-                fill(row, &mut NewRow { start: sums.len(), entries: &mut sums });
-                starts.push(sums.len());
+                fill(row, &mut NewRow { entries: &mut sums });
+                entries.extend(sums.drain(..).map(|(column, sum)| (column, value(row, column, sum))));
+                starts.push(entries.len());
             }
-            Block { starts, entries: sums.iter().map(|(column, sum)| (*column, value(*sum))).collect() }
+            entries.shrink_to_fit();
+            Block { starts, entries }
         };
         Self { blocks: (0..len.div_ceil(ROWS_PER_TASK)).into_par_iter().map(block).collect(), len }
     }
@@ -100,16 +103,14 @@ impl<T> CsrRows<T> {
 
 /// A row as it is made: each column once.
 pub(crate) struct NewRow<'a, T> {
-    /// Those of rows before it come first.
     entries: &'a mut Vec<(u32, T)>,
-    start: usize,
 }
 
 impl<T: AddAssign> NewRow<'_, T> {
     /// Adds to the value of a column.
     #[inline]
     pub(crate) fn add(&mut self, column: u32, value: T) {
-        match self.entries[self.start..].iter_mut().find(|(known, _)| *known == column) {
+        match self.entries.iter_mut().find(|(known, _)| *known == column) {
             Some((_, sum)) => *sum += value,
             None => self.entries.push((column, value)),
         }
@@ -117,36 +118,14 @@ impl<T: AddAssign> NewRow<'_, T> {
 
     /// Makes other values of those that there are, or takes them out.
     pub(crate) fn filter_map(&mut self, value: impl Fn(&T) -> Option<T>) {
-        let mut kept = self.start;
-        for at in self.start..self.entries.len() {
-            if let Some(value) = value(&self.entries[at].1) {
-                self.entries[kept] = (self.entries[at].0, value);
-                kept += 1;
+        self.entries.retain_mut(|(_, entry)| match value(entry) {
+            Some(value) => {
+                *entry = value;
+                true
             }
-        }
-        self.entries.truncate(kept);
+            None => false,
+        });
     }
-}
-
-impl CsrRows<f32> {
-    /// Divides each entry by the scales of its row and of its column.
-    pub(crate) fn divide(&mut self, scales: &[f64]) {
-        let divide = |(block, Block { starts, entries }): (usize, &mut Block<f32>)| {
-            for (row, range) in starts.windows(2).enumerate() {
-                let scale = scales[block * ROWS_PER_TASK + row];
-                for (column, value) in &mut entries[range[0]..range[1]] {
-                    *value = single(f64::from(*value) / (scale * scales[*column as usize]));
-                }
-            }
-        };
-        self.blocks.par_iter_mut().enumerate().for_each(divide);
-    }
-}
-
-/// A number in single precision. One that is too large becomes the largest.
-#[expect(clippy::cast_possible_truncation, reason = "rounding")]
-pub(crate) fn single(value: f64) -> f32 {
-    value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
 impl CsrRows<f64> {

@@ -1,6 +1,11 @@
 //! Edges of a tessellation, which it does not store.
 
+use rayon::prelude::*;
+
 use crate::{PeriodicPair, Tessellation, Translation, VertexId};
+
+/// Faces whose edges one task lists.
+const FACES_PER_TASK: usize = 1024;
 
 /// The edges of a tessellation, each once.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,16 +18,15 @@ pub struct Edges {
 
 impl Edges {
     fn new(tessellation: &Tessellation) -> Self {
-        let mut uses: Vec<([VertexId; 2], usize)> = Vec::with_capacity(tessellation.face_corners.len());
-        let mut corner = 0;
-        for face in tessellation.faces() {
-            let corners = tessellation.face_corners(face);
-            for (&from, &to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-                uses.push(([from.min(to), from.max(to)], corner));
-                corner += 1;
-            }
-        }
-        uses.sort_unstable();
+        let faces = (0..tessellation.face_count()).into_par_iter().with_min_len(FACES_PER_TASK);
+        let uses_of = |face: usize| {
+            let first = tessellation.face_starts[face];
+            let corners = &tessellation.face_corners[first..tessellation.face_starts[face + 1]];
+            let ends = corners.iter().zip(corners.iter().cycle().skip(1));
+            ends.zip(first..).map(|((&from, &to), corner)| ([from.min(to), from.max(to)], corner))
+        };
+        let mut uses: Vec<([VertexId; 2], usize)> = faces.flat_map_iter(uses_of).collect();
+        uses.par_sort_unstable();
         let mut edges = Self { ends: Vec::new(), of_corner: vec![0; uses.len()] };
         for same in uses.chunk_by(|left, right| left.0 == right.0) {
             let edge = u32::try_from(edges.ends.len()).expect("edge ids fit 32 bits");

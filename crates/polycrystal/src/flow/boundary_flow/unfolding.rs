@@ -27,7 +27,7 @@ impl Flow<'_> {
                 break;
             }
             let moves = if step < UNFOLDING_STEPS {
-                tangential_moves(self.network, self.level, &points, UNFOLDING)
+                tangential_moves(self.network, self.level, &self.patches, &points, UNFOLDING)
             } else {
                 self.rounding(&points, &places)
             };

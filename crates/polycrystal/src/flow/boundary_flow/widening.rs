@@ -48,7 +48,7 @@ impl Flow<'_> {
             }
             check_cancelled();
             let mut moved = points.clone();
-            if !self.widen(&mut moved, &movable, moving) {
+            if !self.widen(&mut moved, &movable) {
                 continue;
             }
             for _ in 0..2 {
@@ -120,35 +120,40 @@ impl Flow<'_> {
     }
 
     /// Moves groups of points so that the triangles around are wide; tells whether that was any help.
-    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) -> bool {
+    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>]) -> bool {
         let level = &self.network.levels()[self.level];
         let elements = BoundaryElements::of_level(level, self.network.boundaries().len());
-        let around = |movable: &Vec<u32>| {
+        let boundaries_around = |movable: &Vec<u32>| {
             let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point));
             let mut boundaries: Vec<usize> =
                 places.map(|place| self.patches.patch_of_place(*place)).collect();
             boundaries.sort_unstable();
             boundaries.dedup();
-            boundaries.into_iter().flat_map(|boundary| elements.of(boundary)).collect()
+            boundaries
         };
-        let groups: Vec<(&Vec<u32>, Vec<u32>)> =
-            movable.iter().map(|movable| (movable, around(movable))).collect();
-        let work: usize = groups.iter().map(|(_, around)| around.len()).sum();
+        // Groups with boundaries in common, which share lines, take turns.
+        let mut turns: Vec<Vec<(&Vec<u32>, Vec<u32>)>> = Vec::new();
+        let mut next_turn = vec![0; elements.boundary_count()];
+        let mut work = 0;
+        for movable in movable {
+            let boundaries = boundaries_around(movable);
+            let turn = boundaries.iter().map(|boundary| next_turn[*boundary]).max().unwrap_or(0);
+            boundaries.iter().for_each(|boundary| next_turn[*boundary] = turn + 1);
+            let around: Vec<u32> = boundaries.iter().flat_map(|boundary| elements.of(*boundary)).collect();
+            work += around.len();
+            turns.resize_with(turns.len().max(turn + 1), Vec::new);
+            turns[turn].push((movable, around));
+        }
         let share = self.tuning.widening * level.element_count() as f64 / work as f64;
         let steps = (1..=STEPS).take_while(|steps| *steps as f64 <= share).last().unwrap_or(0);
-        let together = match moving {
-            Moving::Inside => movable.len(),
-            // Boundaries share lines: one after the other.
-            Moving::Lines => 1,
-        };
         let mut is_wider = false;
-        for groups in groups.chunks(together) {
-            let widened = |(movable, around): &(&Vec<u32>, Vec<u32>)| {
+        for groups in turns {
+            let widened = |(movable, around): (&Vec<u32>, Vec<u32>)| {
                 check_cancelled();
-                let room = Room::new(self.network, self.level, around.clone(), movable, points)?;
+                let room = Room::new(self.network, self.level, around, movable, points)?;
                 room.widened(sine(WIDE), steps)
             };
-            let moved: Vec<Vec<(u32, DVec3)>> = groups.par_iter().filter_map(widened).collect();
+            let moved: Vec<Vec<(u32, DVec3)>> = groups.into_par_iter().filter_map(widened).collect();
             is_wider |= !moved.is_empty();
             for (point, place) in moved.into_iter().flatten() {
                 points[point as usize] = place;
