@@ -17,6 +17,8 @@ pub(crate) struct MergedLines {
     pub(crate) cells: Tessellation,
     /// A point in the middle of each line.
     pub(crate) middles: Vec<DVec3>,
+    /// A point inside each boundary.
+    pub(crate) centers: Vec<DVec3>,
     pub(crate) collapsed: Collapsed,
 }
 
@@ -36,8 +38,35 @@ impl MergedLines {
             middle + nearest.map_or(DVec3::ZERO, |(bulge, _)| *bulge)
         };
         let middles = lines_of(&cells).map(curved).collect();
-        Self { cells, middles, collapsed }
+        let centers = centers_of(complex, shape, &all, &cells);
+        Self { cells, middles, centers, collapsed }
     }
+}
+
+/// A point inside each boundary of some cells: off the mean of its corners by as much as that of the nearest boundary between the same sides of `all` is, which the complex made.
+fn centers_of(complex: &CellComplex, shape: &Shape, all: &Tessellation, cells: &Tessellation) -> Vec<DVec3> {
+    let mean = |cells: &Tessellation, face: FaceId| {
+        let corners = cells.face_corners(face);
+        let sum: DVec3 = corners.iter().map(|corner| cells.vertices()[corner.index()]).sum();
+        sum / corners.len() as f64
+    };
+    let primaries = complex.faces();
+    let copied = all.periodic_faces().iter().map(|pair| primaries[pair.primary.index()]);
+    let numbers = primaries.iter().copied().chain(copied);
+    let known = all.faces().zip(numbers);
+    let mut known: Vec<([Side; 2], DVec3, DVec3)> =
+        known.map(|(face, number)| (all.face_sides(face), mean(all, face), shape.bulge(number))).collect();
+    known.par_sort_by(|a, b| a.0.cmp(&b.0));
+    let center = |face: FaceId| {
+        let (sides, middle) = (cells.face_sides(face), mean(cells, face));
+        let first = known.partition_point(|known| known.0 < sides);
+        let same = known[first..].iter().take_while(|known| known.0 == sides);
+        let distance = |known: &([Side; 2], DVec3, DVec3)| known.1.distance_squared(middle);
+        let nearest = same.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        middle + nearest.map_or(DVec3::ZERO, |(.., bulge)| *bulge)
+    };
+    let faces: Vec<FaceId> = cells.faces().collect();
+    faces.into_par_iter().map(center).collect()
 }
 
 /// A line of some cells.

@@ -81,18 +81,20 @@ pub(crate) fn settle(
         let events = reconnector.pass(&mut complex, &conditions, &before, &mut excess);
         reconnections.add(events);
         quiet = if events.count() > 0 { 0 } else { quiet + 1 };
-        let is_at_rest = quiet > QUIET_STEPS && (last_energy - energy).abs() < QUIET_CHANGE * energy;
-        if is_at_rest || steps == count {
-            let time = steps as f64 * step_time;
-            return Ok(Settled { complex, shape, reconnections, steps, time });
-        }
-        last_energy = energy;
         if events.count() > 0 {
             let changed = Fans::new(&complex, recipe.tension);
             shape = shape.with_new_ends(&fans, &changed);
             fans = changed;
         }
         points = shape.points(&complex, &fans);
+        let is_at_rest = quiet > QUIET_STEPS && (last_energy - energy).abs() < QUIET_CHANGE * energy;
+        if is_at_rest || steps == count {
+            // In the last events, too, what would be folded became flat.
+            let shape = Shape::new(&fans, &points);
+            let time = steps as f64 * step_time;
+            return Ok(Settled { complex, shape, reconnections, steps, time });
+        }
+        last_energy = energy;
     }
     unreachable!("the last step returns")
 }

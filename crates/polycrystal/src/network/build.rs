@@ -90,15 +90,16 @@ impl Network {
         Self::assemble(tessellation.domain(), control_mesh, volumes, level_count)
     }
 
-    /// The network of cells in space, each of whose lines goes through one point, its middle.
+    /// The network of cells in space, each of whose lines goes through one point, its middle; all of each boundary is seen from its centre.
     pub(crate) fn of_curved_lines(
         tessellation: &Tessellation,
         middles: &[DVec3],
+        centers: &[DVec3],
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_face_mesh(tessellation, FaceMesh::SparseFan, level_count)?;
-        let control_mesh = ControlMesh::of_curved_lines(tessellation, middles, junctions)?;
+        let control_mesh = ControlMesh::of_curved_lines(tessellation, middles, centers, junctions)?;
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
     }

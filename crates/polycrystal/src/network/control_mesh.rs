@@ -87,14 +87,15 @@ impl ControlMesh {
     }
 
     /// That of cells in space whose lines are curved: each goes through one point, its middle. Boundaries are filled by fans with as
-    /// many centres as their outline takes.
+    /// many centres as their outline takes; `centers` are places from which all of it is seen.
     pub(crate) fn of_curved_lines(
         tessellation: &Tessellation,
         middles: &[DVec3],
+        centers: &[DVec3],
         junctions: Junctions,
     ) -> Result<ControlMesh, NetworkError> {
         let boundaries = boundaries(tessellation);
-        surfaces(tessellation, boundaries, FaceMesh::SparseFan, junctions, Some(middles))
+        surfaces(tessellation, boundaries, FaceMesh::SparseFan, junctions, Some([middles, centers]))
     }
 }
 
@@ -126,14 +127,14 @@ fn surfaces(
     boundaries: Vec<Boundary>,
     face_mesh: FaceMesh,
     junctions: Junctions,
-    middles: Option<&[DVec3]>,
+    curved: Option<[&[DVec3]; 2]>,
 ) -> Result<ControlMesh, NetworkError> {
     let edges = tessellation.edges();
     let vertex_count = tessellation.vertices().len();
     let copied_lines = tessellation.periodic_edges(&edges);
-    let line_mesh = if middles.is_some() { FaceMesh::Fan } else { face_mesh };
+    let line_mesh = if curved.is_some() { FaceMesh::Fan } else { face_mesh };
     let mut lines = LinePoints::new(tessellation, &edges.ends, &copied_lines, line_mesh);
-    if let Some(middles) = middles {
+    if let Some([middles, _]) = curved {
         lines.positions.copy_from_slice(middles);
     }
     let mut points = tessellation.vertices().to_vec();
@@ -158,7 +159,14 @@ fn surfaces(
     let on_lines: Vec<WallSet> = lines.lines().map(walls_of_line).collect();
     walls.extend(on_lines);
 
-    let faces = triangulate_faces(tessellation, &edges, &lines, &points, face_mesh);
+    let faces = triangulate_faces(
+        tessellation,
+        &edges,
+        &lines,
+        &points,
+        face_mesh,
+        curved.map(|[_, centers]| centers),
+    );
     let mut copies = PeriodicCopies::of_vertices(tessellation);
     copies.vertices.extend(lines.copies(tessellation, &edges.ends, &copied_lines));
     let of_faces: Vec<[usize; 2]> =

@@ -250,13 +250,15 @@ impl FaceTriangles {
     }
 }
 
-/// Triangulates all faces, in parallel; copied ones as their originals. `points` are the tessellation's vertices and those on lines.
+/// Triangulates all faces, in parallel; copied ones as their originals. `points` are the tessellation's vertices and those on lines; `centers` are
+/// places inside the faces from which their outlines are seen.
 pub(crate) fn triangulate_faces(
     tessellation: &Tessellation,
     edges: &Edges,
     lines: &LinePoints,
     points: &[DVec3],
     face_mesh: FaceMesh,
+    centers: Option<&[DVec3]>,
 ) -> Vec<FaceTriangles> {
     let mut first_corners = Vec::with_capacity(tessellation.face_count());
     let mut corner_count = 0;
@@ -278,7 +280,8 @@ pub(crate) fn triangulate_faces(
             }
             lines_of.resize(outline.len(), line);
         }
-        let (inner_points, triangles) = fill(&outline, points, face_mesh);
+        let center = centers.map(|centers| centers[face.index()]);
+        let (inner_points, triangles) = fill(&outline, points, face_mesh, center);
         FaceTriangles { outline, lines: lines_of, inner_points, triangles }
     };
     let mut faces: Vec<FaceTriangles> = first_corners.par_iter().map(triangulate).collect();
@@ -290,7 +293,8 @@ pub(crate) fn triangulate_faces(
         let originals: Vec<usize> = originals.map(|pair| pair.primary.index()).collect();
         for face in shared.into_iter().chain(originals) {
             let FaceTriangles { outline, inner_points, triangles, .. } = &mut faces[face];
-            (*inner_points, *triangles) = fill(outline, points, FaceMesh::Fan);
+            let center = centers.map(|centers| centers[face]);
+            (*inner_points, *triangles) = fill(outline, points, FaceMesh::Fan, center);
         }
         copy_faces(tessellation, &mut faces);
     }
@@ -333,7 +337,12 @@ fn copy_faces(tessellation: &Tessellation, faces: &mut [FaceTriangles]) {
     }
 }
 
-fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn fill(
+    outline: &[u32],
+    points: &[DVec3],
+    face_mesh: FaceMesh,
+    center: Option<DVec3>,
+) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let positions: Vec<DVec3> = outline.iter().map(|point| points[*point as usize]).collect();
     let mesh = match face_mesh {
         FaceMesh::Fan | FaceMesh::SparseFan => None,
@@ -348,7 +357,16 @@ fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, 
     match mesh {
         Some(mesh) => (mesh.inner_points, mesh.triangles),
         // Also what rounding leaves no triangulation of: the centre of a sliver still sees all of its outline.
-        None if face_mesh == FaceMesh::SparseFan => Fan::new(&positions).with_more_centers().into_mesh(),
-        None => Fan::new(&positions).into_mesh(),
+        None => {
+            let mut fan = Fan::new(&positions);
+            if let Some(center) = center {
+                fan = fan.or_around(center);
+            }
+            if face_mesh == FaceMesh::SparseFan {
+                fan.with_more_centers().into_mesh()
+            } else {
+                fan.into_mesh()
+            }
+        }
     }
 }

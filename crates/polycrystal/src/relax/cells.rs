@@ -140,12 +140,12 @@ pub(crate) fn smoothed(
     };
     let mut attempts = Vec::new();
     let mut smooth = |merged_length: f64| {
-        let MergedLines { cells, middles, collapsed: merged } =
+        let MergedLines { cells, middles, centers, collapsed: merged } =
             MergedLines::new(&settled.complex, &settled.shape, merged_length);
         let NetworkRecipe { face_mesh, junctions, levels, .. } = *recipe;
         let ((network, points), start) = match face_mesh {
             FaceMesh::Fan | FaceMesh::SparseFan => {
-                (Network::of_curved_lines(&cells, &middles, junctions, levels)?, Start::Relaxed)
+                (Network::of_curved_lines(&cells, &middles, &centers, junctions, levels)?, Start::Relaxed)
             }
             FaceMesh::Plain | FaceMesh::Refined { .. } => {
                 (Network::with_face_mesh(&cells, face_mesh, junctions, levels)?, Start::Flat)
