@@ -102,13 +102,20 @@ impl Shape {
             let bulge = self.bulge_of_line(line_of(&corners, *ends));
             points.push(mean(&points, ends) + bulge);
         }
-        let primaries = complex.faces();
-        let copied = cells.periodic_faces().iter().map(|pair| primaries[pair.primary.index()]);
-        for (face, number) in cells.faces().zip(primaries.iter().copied().chain(copied)) {
+        for (face, number) in cells.faces().zip(face_numbers(complex, &cells)) {
             points.push(mean(&points, cells.face_corners(face)) + self.bulge(number));
         }
         (cells, points)
     }
+}
+
+/// The face of a complex that each face of its cells is, or is a copy of.
+pub(crate) fn face_numbers(complex: &CellComplex, cells: &Tessellation) -> Vec<FaceId> {
+    let mut numbers = complex.faces();
+    let copied: Vec<FaceId> =
+        cells.periodic_faces().iter().map(|pair| numbers[pair.primary.index()]).collect();
+    numbers.extend(copied);
+    numbers
 }
 
 /// The line of a complex that leads from one vertex of its cells to another; `corners` has the complex's vertices of these.

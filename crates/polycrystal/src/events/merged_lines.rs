@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{FaceId, Side, Tessellation, VertexId};
 
-use crate::energy::shape::{Shape, distinct, line_of};
+use crate::energy::shape::{Shape, distinct, face_numbers, line_of};
 use crate::mesh::grouped::Grouped;
 use crate::{CellComplex, Collapsed, remove_short_edges};
 
@@ -26,44 +26,57 @@ impl MergedLines {
     /// Draws lines shorter than `length` together, as [`remove_short_edges`] has it; the others keep their bulges.
     pub(crate) fn new(complex: &CellComplex, shape: &Shape, length: f64) -> Self {
         let (all, corners) = complex.tessellation();
-        let bulge = |line: &Line| shape.bulge_of_line(line_of(&corners, line.ends));
-        let mut known: Vec<(DVec3, Line)> = lines_of(&all).map(|line| (bulge(&line), line)).collect();
-        known.par_sort_by(|(_, a), (_, b)| a.sides.cmp(&b.sides));
+        let known = lines_of(&all).map(|Line { sides, ends, middle }| {
+            let bulge = shape.bulge_of_line(line_of(&corners, ends));
+            Known { sides, middle, bulge }
+        });
+        let known = sorted(known.collect());
         let (cells, collapsed) = remove_short_edges(&all, length);
-        let curved = |Line { sides, middle, .. }: Line| {
-            let first = known.partition_point(|(_, line)| line.sides < sides);
-            let before = known[first..].iter().take_while(|(_, line)| line.sides == sides);
-            let distance = |line: &Line| line.middle.distance_squared(middle);
-            let nearest = before.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
-            middle + nearest.map_or(DVec3::ZERO, |(bulge, _)| *bulge)
-        };
+        let curved = |Line { sides, middle, .. }: Line| middle + bulge(&known, &sides, middle);
         let middles = lines_of(&cells).map(curved).collect();
         let centers = centers_of(complex, shape, &all, &cells);
         Self { cells, middles, centers, collapsed }
     }
 }
 
-/// A point inside each boundary of some cells: off the mean of its corners by as much as that of the nearest boundary between the same sides of `all` is, which the complex made.
+/// A line or a boundary before lines were drawn together.
+struct Known<Sides> {
+    sides: Sides,
+    /// The mean of its corners.
+    middle: DVec3,
+    bulge: DVec3,
+}
+
+fn sorted<Sides: Ord + Send>(mut known: Vec<Known<Sides>>) -> Vec<Known<Sides>> {
+    known.par_sort_by(|a, b| a.sides.cmp(&b.sides));
+    known
+}
+
+/// How far the nearest of what is known between some sides bulges; what is new does not.
+fn bulge<Sides: Ord>(known: &[Known<Sides>], sides: &Sides, middle: DVec3) -> DVec3 {
+    let first = known.partition_point(|known| known.sides < *sides);
+    let same = known[first..].iter().take_while(|known| known.sides == *sides);
+    let distance = |known: &Known<Sides>| known.middle.distance_squared(middle);
+    let nearest = same.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map_or(DVec3::ZERO, |known| known.bulge)
+}
+
+/// A point inside each boundary of some cells: off the mean of its corners by as much as it was in `all`, which the complex made.
 fn centers_of(complex: &CellComplex, shape: &Shape, all: &Tessellation, cells: &Tessellation) -> Vec<DVec3> {
     let mean = |cells: &Tessellation, face: FaceId| {
         let corners = cells.face_corners(face);
         let sum: DVec3 = corners.iter().map(|corner| cells.vertices()[corner.index()]).sum();
         sum / corners.len() as f64
     };
-    let primaries = complex.faces();
-    let copied = all.periodic_faces().iter().map(|pair| primaries[pair.primary.index()]);
-    let numbers = primaries.iter().copied().chain(copied);
-    let known = all.faces().zip(numbers);
-    let mut known: Vec<([Side; 2], DVec3, DVec3)> =
-        known.map(|(face, number)| (all.face_sides(face), mean(all, face), shape.bulge(number))).collect();
-    known.par_sort_by(|a, b| a.0.cmp(&b.0));
+    let known = all.faces().zip(face_numbers(complex, all)).map(|(face, number)| Known {
+        sides: all.face_sides(face),
+        middle: mean(all, face),
+        bulge: shape.bulge(number),
+    });
+    let known = sorted(known.collect());
     let center = |face: FaceId| {
-        let (sides, middle) = (cells.face_sides(face), mean(cells, face));
-        let first = known.partition_point(|known| known.0 < sides);
-        let same = known[first..].iter().take_while(|known| known.0 == sides);
-        let distance = |known: &([Side; 2], DVec3, DVec3)| known.1.distance_squared(middle);
-        let nearest = same.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        middle + nearest.map_or(DVec3::ZERO, |(.., bulge)| *bulge)
+        let middle = mean(cells, face);
+        middle + bulge(&known, &cells.face_sides(face), middle)
     };
     let faces: Vec<FaceId> = cells.faces().collect();
     faces.into_par_iter().map(center).collect()

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::mesh::adjacency::{Adjacency, Incidence};
+use crate::mesh::adjacency::{Adjacency, Incidence, by_edge_in_parallel};
 use crate::{Elements, Side, Surface};
 
 /// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
@@ -47,7 +47,7 @@ impl DihedralSectors {
             });
             sectors.collect::<Vec<_>>()
         };
-        let edges = adjacency.incidences.par_chunk_by(|a, b| a.edge == b.edge);
+        let edges = by_edge_in_parallel(&adjacency.incidences);
         let mut dihedral_sectors: Vec<DihedralSector> = edges.flat_map_iter(at_edge).collect();
         dihedral_sectors.shrink_to_fit();
         Self { dihedral_sectors }

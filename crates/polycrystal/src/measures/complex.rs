@@ -3,7 +3,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 use voronoi::PeriodicVertex;
 
-use crate::mesh::adjacency::{Adjacency, Incidence, Inner};
+use crate::mesh::adjacency::{Adjacency, Incidence, Inner, by_edge, by_edge_in_parallel};
 use crate::mesh::angles::{DihedralSector, WeightedAngle, angles, dihedral_sectors};
 use crate::{BoundaryId, Elements, LevelView, Network, Side, Surface};
 
@@ -84,12 +84,12 @@ impl<'a> Complex<'a> {
 
     /// The incidences of each edge that is not inside a boundary.
     pub(crate) fn non_manifold_edges(&self) -> impl Iterator<Item = &[Incidence]> {
-        self.incidences.chunk_by(|a, b| a.edge == b.edge)
+        by_edge(&self.incidences)
     }
 
     /// As [`Self::non_manifold_edges`].
     pub(crate) fn non_manifold_edges_in_parallel(&self) -> impl ParallelIterator<Item = &[Incidence]> {
-        self.incidences.par_chunk_by(|a, b| a.edge == b.edge)
+        by_edge_in_parallel(&self.incidences)
     }
 
     /// The boundaries that meet at an edge, sorted.

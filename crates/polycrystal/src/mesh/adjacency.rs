@@ -231,6 +231,11 @@ pub(crate) fn by_edge(incidences: &[Incidence]) -> impl Iterator<Item = &[Incide
     incidences.chunk_by(|a, b| a.edge == b.edge)
 }
 
+/// As [`by_edge`].
+pub(crate) fn by_edge_in_parallel(incidences: &[Incidence]) -> impl ParallelIterator<Item = &[Incidence]> {
+    incidences.par_chunk_by(|a, b| a.edge == b.edge)
+}
+
 /// The incidences of all edges of a mesh that are not inside a boundary.
 fn incidences_of_mesh(mesh: &TriangleMesh, boundary_of: &[BoundaryId]) -> Vec<Incidence> {
     let edge_count = mesh.counts().edges;
