@@ -1,8 +1,8 @@
 //! Loops compiled again for processors that take more numbers at once than the oldest, which takes a fraction of their time.
 //!
 //! Rust compiles for the oldest processors of an architecture unless told otherwise. Only the speed differs: no version
-//! contracts or reorders operations. The crate's only unsafe code is here and in `sites/bisectors.rs`: calls of functions that need AVX2
-//! or AVX-512, each behind the question whether the processor has it, and there loads and stores of whole lanes, each within a slice.
+//! contracts or reorders operations. The crate's only unsafe code is here and in `sites/bisectors`: calls of functions that need AVX2
+//! or AVX-512, each behind the question whether the processor has it, and with AVX-512 loads and stores of whole lanes, each within a slice.
 
 /// Numbers that loops take at a time.
 pub(crate) const LANES: usize = 8;
