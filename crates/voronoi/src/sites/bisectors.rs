@@ -71,8 +71,8 @@ pub(crate) fn compact(
                 }
             };
         }
-        if is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2.
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") {
+            // SAFETY: the processor has AVX2, and counts bits.
             return unsafe {
                 match sites.weights {
                     Some(weights) => avx2::compact::<true>(sites, weights, runs, around, generators, planes),
