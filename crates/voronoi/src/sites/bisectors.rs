@@ -58,49 +58,39 @@ pub(crate) fn compact(
     generators: &mut [Generator],
     planes: [&mut [f32]; 4],
 ) -> usize {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if crate::lanes::has_avx512() {
-            // SAFETY: the processor has AVX-512.
-            return unsafe {
-                match sites.weights {
-                    Some(weights) => {
-                        avx512::compact::<true>(sites, weights, runs, around, generators, planes)
-                    }
-                    None => avx512::compact::<false>(sites, &[], runs, around, generators, planes),
-                }
-            };
-        }
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") {
-            // SAFETY: the processor has AVX2, and counts bits.
-            return unsafe {
-                match sites.weights {
-                    Some(weights) => avx2::compact::<true>(sites, weights, runs, around, generators, planes),
-                    None => avx2::compact::<false>(sites, &[], runs, around, generators, planes),
-                }
-            };
-        }
+    match sites.weights {
+        Some(weights) => compact_by_processor::<true>(sites, weights, runs, around, generators, planes),
+        // What stands for the weights is not looked at.
+        None => compact_by_processor::<false>(sites, sites.x, runs, around, generators, planes),
     }
-    compact_anywhere(sites, runs, around, generators, planes)
 }
 
-fn compact_anywhere(
+#[inline]
+fn compact_by_processor<const WEIGHTED: bool>(
     sites: Columns,
+    weights: &[f64],
     runs: &[Range<u32>],
     around: &Around,
     generators: &mut [Generator],
     planes: [&mut [f32]; 4],
 ) -> usize {
-    match sites.weights {
-        Some(weights) => compact_with::<true>(sites, weights, runs, around, generators, planes),
-        // What stands for the weights is not looked at.
-        None => compact_with::<false>(sites, sites.x, runs, around, generators, planes),
+    #[cfg(target_arch = "x86_64")]
+    {
+        if crate::lanes::has_avx512() {
+            // SAFETY: the processor has AVX-512.
+            return unsafe { avx512::compact::<WEIGHTED>(sites, weights, runs, around, generators, planes) };
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") {
+            // SAFETY: the processor has AVX2, and counts bits.
+            return unsafe { avx2::compact::<WEIGHTED>(sites, weights, runs, around, generators, planes) };
+        }
     }
+    compact_anywhere::<WEIGHTED>(sites, weights, runs, around, generators, planes)
 }
 
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "to be rounded")]
-fn compact_with<const WEIGHTED: bool>(
+fn compact_anywhere<const WEIGHTED: bool>(
     sites: Columns,
     weights: &[f64],
     runs: &[Range<u32>],
@@ -175,7 +165,11 @@ mod tests {
             let (generators, planes) = (&mut found.0, found.1.each_mut().map(|column| &mut column[..]));
             let count = compact(sites, &runs, &around, generators, planes);
             let (generators, planes) = (&mut plain.0, plain.1.each_mut().map(|column| &mut column[..]));
-            assert_eq!(count, compact_anywhere(sites, &runs, &around, generators, planes));
+            let anywhere = match weights {
+                Some(weights) => compact_anywhere::<true>(sites, weights, &runs, &around, generators, planes),
+                None => compact_anywhere::<false>(sites, &x, &runs, &around, generators, planes),
+            };
+            assert_eq!(count, anywhere);
             let generators = &found.0[..count];
             columns = found.1.each_ref().map(|column| column[..count].to_vec());
             assert_eq!(generators, &plain.0[..count]);

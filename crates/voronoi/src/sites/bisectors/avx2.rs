@@ -10,13 +10,14 @@ const WIDTH: usize = 4;
 
 /// Of each set of lanes, its lanes first, in order.
 const PACKED: [[i32; WIDTH]; 1 << WIDTH] = {
+    let lanes: [i32; WIDTH] = [0, 1, 2, 3];
     let mut packed = [[0; WIDTH]; 1 << WIDTH];
     let mut set = 0;
     while set < packed.len() {
         let (mut lane, mut place) = (0, 0);
-        while lane < 4 {
+        while lane < WIDTH {
             if set >> lane & 1 == 1 {
-                packed[set][place] = lane;
+                packed[set][place] = lanes[lane];
                 place += 1;
             }
             lane += 1;
