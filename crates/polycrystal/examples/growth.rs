@@ -1,4 +1,4 @@
-//! What becomes of grains that grow in the plane with other numbers than the tuned ones: the table of docs/relaxation.md.
+//! What becomes of grains that grow with other numbers than the tuned ones: the tables of docs/relaxation.md, in the plane, or with `--space`.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a command that prints, for developers")]
 
@@ -7,45 +7,60 @@ use std::time::Instant;
 
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, FaceMesh, GrowthRecipe, GrowthTuning, Junctions, Moving, NetworkError, NetworkRecipe,
+    Boundary, FaceMesh, GrowthRecipe, GrowthTuning, Junctions, Measures, Moving, NetworkError, NetworkRecipe,
     RelaxationStep, grow_cells_tuned, measure_network,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use voronoi::{Domain, Tessellation};
-
-/// Grains of each network.
-const GRAINS: usize = 200;
+use voronoi::{Dimension, Domain, Tessellation};
 
 /// How many networks there are.
 const NETWORKS: u64 = 5;
 
-/// For how long they grow.
-const TIME: f64 = 2.0;
-
-/// From when on rates are those of boundaries at rest at triple points.
+/// From when on rates are those of boundaries at rest at junctions.
 const SETTLED: f64 = 0.1;
+
+/// What grows, and for how long.
+struct Setting {
+    domain: Domain,
+    grains: usize,
+    time: f64,
+}
 
 fn main() -> Result<(), NetworkError> {
     let usual = GrowthTuning::default();
-    let rows = [
-        ("base", usual),
-        ("spacing 0.05", GrowthTuning { spacing: 0.05, ..usual }),
-        ("spacing 0.2", GrowthTuning { spacing: 0.2, ..usual }),
-        ("error 1e-3", GrowthTuning { largest_error: 1e-3, ..usual }),
-        ("error 1e-2", GrowthTuning { largest_error: 1e-2, ..usual }),
-        ("short 0.025", GrowthTuning { short: 0.025, ..usual }),
-        ("short 0.1", GrowthTuning { short: 0.1, ..usual }),
-        ("vanished 5e-4", GrowthTuning { vanished: 5e-4, ..usual }),
-        ("vanished 1e-2", GrowthTuning { vanished: 1e-2, ..usual }),
-    ];
-    println!("| change | failures | left at 0.5, 1, 2 | rate off: median, 90 % | steps | s |");
+    let in_space = std::env::args().any(|word| word == "--space");
+    let (setting, rows) = if in_space {
+        let rows = vec![
+            ("base", usual),
+            ("error 3e-4", GrowthTuning { largest_error_in_space: 3e-4, ..usual }),
+            ("error 3e-3", GrowthTuning { largest_error_in_space: 3e-3, ..usual }),
+            ("vanished 5e-4", GrowthTuning { vanished: 5e-4, ..usual }),
+            ("vanished 1e-2", GrowthTuning { vanished: 1e-2, ..usual }),
+        ];
+        (Setting { domain: Domain::unit_cube(), grains: 100, time: 0.6 }, rows)
+    } else {
+        let rows = vec![
+            ("base", usual),
+            ("spacing 0.05", GrowthTuning { spacing: 0.05, ..usual }),
+            ("spacing 0.2", GrowthTuning { spacing: 0.2, ..usual }),
+            ("error 1e-3", GrowthTuning { largest_error_in_plane: 1e-3, ..usual }),
+            ("error 1e-2", GrowthTuning { largest_error_in_plane: 1e-2, ..usual }),
+            ("short 0.025", GrowthTuning { short: 0.025, ..usual }),
+            ("short 0.1", GrowthTuning { short: 0.1, ..usual }),
+            ("vanished 5e-4", GrowthTuning { vanished: 5e-4, ..usual }),
+            ("vanished 1e-2", GrowthTuning { vanished: 1e-2, ..usual }),
+        ];
+        (Setting { domain: Domain::unit_square(), grains: 200, time: 2.0 }, rows)
+    };
+    let [one, two, three] = setting.times();
+    println!("| change | failures | left at {one}, {two}, {three} | rate off: median, 90 % | steps | s |");
     println!("|---|---|---|---|---|---|");
     for (name, tuning) in rows {
         let start = Instant::now();
         let mut sum = Outcome::default();
         for random_seed in 1..=NETWORKS {
-            grow(random_seed, &tuning, &mut sum)?;
+            grow(&setting, random_seed, &tuning, &mut sum)?;
         }
         sum.errors.sort_by(f64::total_cmp);
         let [median, most] = [2, 10].map(|part| sum.errors[sum.errors.len() - 1 - sum.errors.len() / part]);
@@ -64,31 +79,54 @@ fn main() -> Result<(), NetworkError> {
     Ok(())
 }
 
+impl Setting {
+    /// Times at which grains that are left are counted.
+    fn times(&self) -> [f64; 3] {
+        [0.25, 0.5, 1.0].map(|share| share * self.time)
+    }
+}
+
 /// Of all networks together.
 #[derive(Default)]
 struct Outcome {
     failures: usize,
     left: [usize; 3],
-    /// How far rates are off the law of von Neumann and Mullins, of grains that keep their sides for a step.
+    /// How far rates are off the law of von Neumann and Mullins, or of MacPherson and Srolovitz, of grains that keep the number of their boundaries for a step.
     errors: Vec<f64>,
     steps: usize,
 }
 
-fn grow(random_seed: u64, tuning: &GrowthTuning, sum: &mut Outcome) -> Result<(), NetworkError> {
-    let domain = Domain::unit_square().with_periods(BVec3::TRUE);
+/// A grain: how many boundaries it has, its area or volume, and how fast that grows by the law.
+#[derive(Clone, Copy, Default)]
+struct Grain {
+    boundaries: usize,
+    size: f64,
+    law: f64,
+}
+
+fn grow(
+    setting: &Setting,
+    random_seed: u64,
+    tuning: &GrowthTuning,
+    sum: &mut Outcome,
+) -> Result<(), NetworkError> {
+    let domain = setting.domain.clone().with_periods(BVec3::TRUE);
+    let is_in_space = domain.dimension() == Dimension::Three;
     let mut random = ChaCha8Rng::seed_from_u64(random_seed);
     let mut coordinate = || f64::from(random.next_u32()) / 2f64.powi(32);
-    let seeds: Vec<DVec3> = (0..GRAINS).map(|_| DVec3::new(coordinate(), coordinate(), 0.0)).collect();
-    let cells = Tessellation::new(&domain, &seeds).expect("seeds in the square");
+    let mut seed = || DVec3::new(coordinate(), coordinate(), if is_in_space { coordinate() } else { 0.0 });
+    let seeds: Vec<DVec3> = (0..setting.grains).map(|_| seed()).collect();
+    let cells = Tessellation::new(&domain, &seeds).expect("seeds in the domain");
     let tension = |_: &Boundary| 1.0;
     let network = NetworkRecipe {
         face_mesh: FaceMesh::Fan,
         junctions: Junctions::Crease,
-        levels: 1,
+        levels: if is_in_space { 0 } else { 1 },
         tension: &tension,
     };
     let recipe = GrowthRecipe { network, mobility: &tension };
-    let mut last: Option<(f64, Vec<(usize, f64)>)> = None;
+    let unit = domain.dimension().cube_edge(1.0 / setting.grains as f64).powi(2);
+    let mut last: Option<(f64, Vec<Grain>)> = None;
     let mut failed = None;
     let watch = |step: RelaxationStep<'_>| {
         let Moving::Grains(make) = step.now else { unreachable!("grains grow") };
@@ -96,31 +134,35 @@ fn grow(random_seed: u64, tuning: &GrowthTuning, sum: &mut Outcome) -> Result<()
             Ok(made) => made,
             Err(error) => return failed = Some(error),
         };
-        let measures = measure_network(&network, &network.subdivide(&points))
-            .in_plane()
-            .expect("a network in the plane");
-        let mut now = vec![(0, 0.0); GRAINS];
-        for grain in &measures.grains {
-            now[grain.grain.index()] = (grain.side_count, grain.area);
+        let mut now = vec![Grain::default(); setting.grains];
+        match measure_network(&network, &network.subdivide(&points)) {
+            Measures::Plane(measures) => measures.grains.iter().for_each(|grain| {
+                let law = FRAC_PI_3 * (grain.side_count as f64 - 6.0);
+                now[grain.grain.index()] = Grain { boundaries: grain.side_count, size: grain.area, law };
+            }),
+            Measures::Space(measures) => measures.grains.iter().for_each(|grain| {
+                let law = grain.growth_rate.expect("no walls");
+                now[grain.grain.index()] = Grain { boundaries: grain.face_count, size: grain.volume, law };
+            }),
         }
-        if let Some((before, sides_and_areas)) = &last
+        if let Some((before, grains)) = &last
             && *before > SETTLED
         {
-            let passed = (step.time - before) / GRAINS as f64;
-            for ((sides, before), (sides_now, area)) in sides_and_areas.iter().zip(&now) {
-                if sides == sides_now && *sides > 0 && *sides != 6 {
-                    let law = FRAC_PI_3 * (*sides as f64 - 6.0);
-                    sum.errors.push(((area - before) / passed / law - 1.0).abs());
+            let passed = (step.time - before) * unit;
+            for (before, after) in grains.iter().zip(&now) {
+                let law = 0.5 * (before.law + after.law);
+                if before.boundaries == after.boundaries && law != 0.0 {
+                    sum.errors.push(((after.size - before.size) / passed / law - 1.0).abs());
                 }
             }
         }
         last = Some((step.time, now));
     };
-    match grow_cells_tuned(&cells, &recipe, TIME, tuning, watch) {
+    match grow_cells_tuned(&cells, &recipe, setting.time, tuning, watch) {
         Ok(grown) => {
             sum.steps += grown.cells.relaxed.steps;
-            for (left, time) in sum.left.iter_mut().zip([0.5, 1.0, 2.0]) {
-                *left += GRAINS - grown.vanished.iter().filter(|grain| grain.time <= time).count();
+            for (left, time) in sum.left.iter_mut().zip(setting.times()) {
+                *left += setting.grains - grown.vanished.iter().filter(|grain| grain.time <= time).count();
             }
         }
         Err(_) => sum.failures += 1,

@@ -107,10 +107,14 @@ pub fn grow_cells_tuned(
     let time = if tensions.is_of_grains { time } else { 0.0 };
     let of_relaxation = Tuning::default();
     let (mut cells, vanished) = match cells.domain().dimension() {
-        Dimension::Two => grow(Curves::new(cells, &in_units, tuning), cells, time, tuning, &mut watch),
+        Dimension::Two => {
+            let front = Curves::new(cells, &in_units, tuning);
+            grow(front, cells, time, tuning.largest_error_in_plane, &mut watch)
+        }
         Dimension::Three if time == 0.0 => Ok((still(cells, &network, &of_relaxation)?, Vec::new())),
         Dimension::Three => {
-            grow(Sheets::new(cells, &in_units, tuning, &of_relaxation), cells, time, tuning, &mut watch)
+            let front = Sheets::new(cells, &in_units, tuning, &of_relaxation);
+            grow(front, cells, time, tuning.largest_error_in_space, &mut watch)
         }
     }?;
     cells.network = cells.network.with_tensions(recipe.network.tension)?.with_mobilities(recipe.mobility)?;
@@ -122,10 +126,10 @@ fn grow(
     mut front: impl Front,
     cells: &Tessellation,
     time: f64,
-    tuning: &GrowthTuning,
+    largest_error: f64,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<(RelaxedCells, Vec<Vanished>), NetworkError> {
     let History { steps, reconnections, vanished } =
-        if time > 0.0 { advance(&mut front, cells, time, tuning, watch)? } else { History::default() };
+        if time > 0.0 { advance(&mut front, cells, time, largest_error, watch)? } else { History::default() };
     Ok((front.finish(steps, reconnections, time)?, vanished))
 }

@@ -93,13 +93,14 @@ impl CellComplex {
         // Of each its corners where the edge stands, from that behind the edge on: first those between, then the ends of the edge.
         let seen = [kept, gone].map(|face| {
             let corners = &self.faces[face.index()].corners;
-            let is_end = |corner: &PeriodicVertex| [start.vertex, end.vertex].contains(&corner.vertex);
             let count = corners.len();
-            if corners.iter().filter(|corner| is_end(corner)).count() != 2 {
+            // A cell beyond a period from itself has corners of its faces twice, but each edge once.
+            let ends = |k: &usize| ComplexEdge::between([corners[(k + count - 1) % count], corners[*k]]);
+            let mut found = (0..count).filter(|k| ends(k) == edge);
+            let last = found.next()?;
+            if found.next().is_some() || start.vertex == end.vertex {
                 return None;
             }
-            let last =
-                (0..count).find(|k| is_end(&corners[*k]) && is_end(&corners[(k + count - 1) % count]))?;
             let place = if corners[last].vertex == end.vertex { end } else { start };
             let at = FaceAt { face: face.0, offset: place.translation - corners[last].translation };
             let mut ring: Vec<PeriodicVertex> = self.corners_at(at).collect();

@@ -68,7 +68,7 @@ impl CellComplex {
     /// What lies around an edge; nothing where other than three sides meet at it, or other than four at its ends.
     pub fn star_of_edge(&self, edge: ComplexEdge) -> Option<Star> {
         let places = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
-        let [start, end] = [self.vertex_star(places[0])?, self.vertex_star(places[1])?];
+        let [start, end] = [self.simple_star(places[0])?, self.simple_star(places[1])?];
         let around = start.sides_of_edge(places[1])?;
         if end.edge(around)? != places[0] {
             return None;
@@ -94,7 +94,7 @@ impl CellComplex {
     pub fn star_of_triangle(&self, face: FaceId) -> Option<(Star, [PeriodicVertex; 3])> {
         let corners: [PeriodicVertex; 3] = self.corners(face).try_into().ok()?;
         let stars =
-            [self.vertex_star(corners[0])?, self.vertex_star(corners[1])?, self.vertex_star(corners[2])?];
+            [self.simple_star(corners[0])?, self.simple_star(corners[1])?, self.simple_star(corners[2])?];
         let ends = self.sides_at(FaceAt { face: face.0, offset: Translation::ZERO });
         let across = [0, 1, 2].map(|k| {
             let sides = stars[(k + 1) % 3].sides_of_edge(corners[(k + 2) % 3])?;
@@ -142,32 +142,36 @@ impl CellComplex {
         self.vertex_star(corner).is_some()
     }
 
+    /// As [`Self::vertex_star`], of faces that come to the vertex once each.
+    fn simple_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
+        let star = self.vertex_star(place)?;
+        star.faces.windows(2).all(|pair| pair[0].0.face != pair[1].0.face).then_some(star)
+    }
+
+    /// What lies around a vertex in general position. A face may come to it twice: that of a cell that meets itself beyond a period.
     fn vertex_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
-        let faces = &self.faces_at[place.vertex as usize];
+        let faces = self.faces_at(&[place.vertex]);
         let mut star = VertexStar {
             sides: Vec::with_capacity(2 * faces.len()),
             faces: Vec::with_capacity(faces.len()),
             edges: Vec::with_capacity(faces.len()),
         };
-        for &face in faces {
+        for FaceId(face) in faces {
             let corners = &self.faces[face as usize].corners;
-            let mut uses = (0..corners.len()).filter(|k| corners[*k].vertex == place.vertex);
-            let k = uses.next()?;
-            if uses.next().is_some() {
-                return None;
-            }
-            let at = FaceAt { face, offset: place.translation - corners[k].translation };
-            let sides = self.sides_at(at);
-            star.sides.extend(sides);
-            star.faces.push((at, sides));
-            for k in [k + 1, k + corners.len() - 1] {
-                let other = corners[k % corners.len()];
-                let other = PeriodicVertex { translation: other.translation + at.offset, ..other };
-                let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
-                    star.edges.push((other, Vec::with_capacity(faces.len())));
-                    star.edges.len() - 1
-                });
-                star.edges[known].1.extend(sides);
+            for k in (0..corners.len()).filter(|k| corners[*k].vertex == place.vertex) {
+                let at = FaceAt { face, offset: place.translation - corners[k].translation };
+                let sides = self.sides_at(at);
+                star.sides.extend(sides);
+                star.faces.push((at, sides));
+                for k in [k + 1, k + corners.len() - 1] {
+                    let other = corners[k % corners.len()];
+                    let other = PeriodicVertex { translation: other.translation + at.offset, ..other };
+                    let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
+                        star.edges.push((other, Vec::new()));
+                        star.edges.len() - 1
+                    });
+                    star.edges[known].1.extend(sides);
+                }
             }
         }
         star.sides.sort_unstable();

@@ -38,7 +38,7 @@ pub(crate) struct Fans {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slot {
     pub(crate) point: u32,
-    offset: DVec3,
+    pub(crate) offset: DVec3,
 }
 
 impl Slot {

@@ -9,6 +9,7 @@ use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::FREE_TOLERANCE;
 use crate::flow::boundary_flow::SLIGHT_BEND;
+use crate::flow::growth_law::GrowthLaw;
 use crate::flow::pressure_response::CHUNK;
 use crate::flow::system::{Parts, System, softened};
 use crate::flow::tied_points::TiedPoints;
@@ -62,7 +63,12 @@ impl FanFlow<'_> {
             Motion::Free { .. } => (Vec::new(), FREE_TOLERANCE),
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
-        let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tolerance);
+        let mut parts = self.parts(&terms, &freedoms, last_place(points));
+        if let Motion::Free { mobilities } = self.motion {
+            let law = GrowthLaw::new(fans, points, &before, &terms);
+            self.follow(&law, mobilities, &mut parts);
+        }
+        let system = System::new(parts, time, tolerance);
         let (moves, pressures) = system.displacement(&missing);
         let mut groups = TiedPoints::apart(fans.point_count());
         *points = groups.moved_unbroken(
@@ -86,9 +92,9 @@ impl FanFlow<'_> {
         }
     }
 
-    /// Whether the way between two places of all points turns or bends a triangle too far.
-    pub(crate) fn breaks(&self, from: &[DVec3], to: &[DVec3]) -> bool {
-        !self.broken(&self.fans.normals(from), &self.fans.normals(to)).is_empty()
+    /// The points of triangles that the way between two places of all points turns or bends too far.
+    pub(crate) fn broken_on_way(&self, from: &[DVec3], to: &[DVec3]) -> Vec<[u32; 3]> {
+        self.broken(&self.fans.normals(from), &self.fans.normals(to))
     }
 
     /// As [`Fans::at_point`], but for walls.
@@ -135,10 +141,7 @@ impl FanFlow<'_> {
         let gradient = |point: usize| -> DVec3 {
             fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
         };
-        let of_junction = match self.motion {
-            Motion::Kept { .. } => self.tuning.junction_softness.sqrt(),
-            Motion::Free { .. } => 1.0,
-        };
+        let of_junction = self.tuning.junction_softness.sqrt();
         // Walls have tension here, so that lines on them are junctions too.
         let softness_root = self.of_points(|point| if point < fans.center_of(0) { of_junction } else { 1.0 });
         let constraint = || match self.motion {
@@ -162,6 +165,27 @@ impl FanFlow<'_> {
                 Motion::Kept { .. } => Vec::new(),
                 Motion::Free { mobilities } => self.sliding_masses(terms, mobilities),
             },
+        }
+    }
+
+    /// Makes the forces on points with equal boundaries around lead to the velocities that the law of growth asks for.
+    fn follow(&self, law: &GrowthLaw<'_>, mobilities: &[f64], parts: &mut Parts) {
+        let Parts { masses, sliding, freedoms, gradient, .. } = parts;
+        let speed = |fan: usize| (self.fans.tensions[fan], mobilities[fan]);
+        let of_point = |point: usize| {
+            let mut speeds = self.inside_at(point).map(|(fan, _)| speed(fan));
+            let (tension, mobility) = speeds.next()?;
+            if speeds.any(|other| other != (tension, mobility)) {
+                return None;
+            }
+            let velocity = law.velocity(point, freedoms[point])? * (tension * mobility);
+            let found = sliding.binary_search_by_key(&point, |(point, _)| *point);
+            let slides = found.map_or(DVec3::ZERO, |place| sliding[place].1 * velocity);
+            Some(slides - velocity * masses[point])
+        };
+        let gradients: Vec<Option<DVec3>> = self.of_points(of_point);
+        for (gradient, exact) in gradient.iter_mut().zip(gradients) {
+            *gradient = exact.unwrap_or(*gradient);
         }
     }
 

@@ -63,8 +63,8 @@ impl Front for Curves<'_> {
         self.take_positions(&faces, points);
     }
 
-    fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened {
-        self.let_happen(volumes, mean)
+    fn pass(&mut self, volumes: &[f64], mean: f64) -> Result<Happened, NetworkError> {
+        Ok(self.let_happen(volumes, mean))
     }
 
     fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {

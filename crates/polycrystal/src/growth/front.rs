@@ -5,7 +5,6 @@ use glam::DVec3;
 use voronoi::Tessellation;
 
 use super::Vanished;
-use super::tuning::GrowthTuning;
 use crate::events::reconnection::Reconnections;
 use crate::flow::boundary_flow::change_of_step;
 use crate::flow::recipe::RelaxedCells;
@@ -37,7 +36,7 @@ pub(super) trait Front {
     fn take(&mut self, points: Self::Points);
 
     /// Lets all events happen that are due, given volumes and their mean.
-    fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened;
+    fn pass(&mut self, volumes: &[f64], mean: f64) -> Result<Happened, NetworkError>;
 
     /// The network as it is now, refined as it will be in the end, and its control points.
     fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError>;
@@ -65,12 +64,12 @@ pub(super) struct History {
     pub(super) vanished: Vec<Vanished>,
 }
 
-/// Lets boundaries move for a time, in units of the mean grain size squared.
+/// Lets boundaries move for a time, in units of the mean grain size squared. `largest_error` is that of a grain's volume in a step, in units of the mean.
 pub(super) fn advance<F: Front>(
     front: &mut F,
     cells: &Tessellation,
     whole_time: f64,
-    tuning: &GrowthTuning,
+    largest_error: f64,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<History, NetworkError> {
     let mut history = History::default();
@@ -92,7 +91,7 @@ pub(super) fn advance<F: Front>(
     let (mut passed, mut step_time) = (0.0, FIRST_STEP * unit);
     loop {
         // At first too: points of more than three edges in the plane, and what is too short to move.
-        let happened = front.pass(&volumes, mean_of(&history));
+        let happened = front.pass(&volumes, mean_of(&history))?;
         let gone = happened.vanished.into_iter().map(|grain| Vanished { grain, time: passed / unit });
         history.vanished.extend(gone);
         history.reconnections.add(happened.reconnections);
@@ -115,9 +114,9 @@ pub(super) fn advance<F: Front>(
                 Ok((whole, halves)) => largest_difference(&front.volumes(whole), &front.volumes(halves)),
                 Err(_) => (f64::INFINITY, GrainId(0)),
             };
-            step_time = time * change_of_step(error / (tuning.largest_error * mean));
+            step_time = time * change_of_step(error / (largest_error * mean));
             match tried {
-                Ok((whole, halves)) if error <= tuning.largest_error * mean => {
+                Ok((whole, halves)) if error <= largest_error * mean => {
                     break (time, front.extrapolated(&start, halves, &whole));
                 }
                 Err(error) if time < LEAST_STEP * square(mean) => return Err(error),

@@ -20,6 +20,9 @@ use crate::network::{feature_size, mean_grain_size};
 use crate::relax::cells::smoothed;
 use crate::{CellComplex, FaceMesh, GrainId, Network, NetworkError, Tuning};
 
+/// Steps of Newton's method that bring the volumes of grains back after events. Each event changes volumes by up to a tenth of the mean; one step leaves 1e-3, two 1e-5.
+const CORRECTIONS: usize = 2;
+
 /// The boundaries of a complex in space.
 pub(super) struct Sheets<'a> {
     recipe: &'a GrowthRecipe<'a>,
@@ -91,23 +94,26 @@ impl<'a> Sheets<'a> {
         FanFlow { fans: &self.fans, motion, tuning: self.tuning }
     }
 
-    /// Gives a grain to the neighbour that it shares the largest boundary with, of those that can have it. Whether there is one.
-    fn vanish(&mut self, cell: CellId) -> bool {
+    /// Gives a grain to the neighbour that it shares the largest boundary with, of those that can have it: to which one.
+    fn vanish(&mut self, cell: CellId) -> Option<CellId> {
         let normals = self.fans.normals(&self.points);
         let area = |face: FaceId| {
             let fan = self.fans.faces.binary_search(&face).expect("each face has a fan");
             let first = self.fans.first_slot(fan);
             normals[first..first + self.fans.rim_len(fan)].iter().map(|normal| normal.length()).sum::<f64>()
         };
-        let mut faces: Vec<(f64, FaceId)> =
-            self.complex.faces_of_cell(cell).map(|face| (area(face), face)).collect();
-        faces.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let beyond = |face: FaceId| {
+            let sides = self.complex.sides(face);
+            sides.iter().filter_map(|side| side.cell()).map(|(other, _)| other).find(|other| *other != cell)
+        };
+        let faces = self.complex.faces_of_cell(cell);
+        let mut ways: Vec<(f64, FaceId, CellId)> =
+            faces.filter_map(|face| Some((area(face), face, beyond(face)?))).collect();
+        ways.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let corners = self.complex.corners_of_cell(cell);
-        let mut ways =
-            [false, true].into_iter().flat_map(|allows| faces.iter().map(move |face| (face.1, allows)));
-        if !ways.any(|(face, allows)| self.complex.cell_to_neighbor_across(cell, face, allows)) {
-            return false;
-        }
+        let mut ways = [false, true].into_iter().flat_map(|allows| ways.iter().map(move |way| (way, allows)));
+        let ((.., heir), _) =
+            ways.find(|((_, face, _), allows)| self.complex.cell_to_neighbor_across(cell, *face, *allows))?;
         // A grain of four faces leaves one of its corners, in the middle of all that are on the same walls.
         let left: Vec<_> = corners
             .iter()
@@ -122,7 +128,19 @@ impl<'a> Sheets<'a> {
             self.complex.vertices[kept.vertex as usize] =
                 middle - kept.translation.vector(self.complex.domain());
         }
-        true
+        Some(*heir)
+    }
+
+    /// Moves points so that grains have the volumes again that they had before events.
+    fn restore(&mut self, volumes: &[f64], size: LocalSize) -> Result<(), NetworkError> {
+        let motion = Motion::Kept { volumes, size };
+        let flow = FanFlow { fans: &self.fans, motion, tuning: self.tuning };
+        let mut points = self.points.clone();
+        for _ in 0..CORRECTIONS {
+            flow.step(&mut points, 0.0)?;
+        }
+        self.take(points);
+        Ok(())
     }
 }
 
@@ -143,9 +161,20 @@ impl Front for Sheets<'_> {
     }
 
     fn extrapolated(&self, start: &Vec<DVec3>, halves: Vec<DVec3>, whole: &Vec<DVec3>) -> Vec<DVec3> {
-        let beyond: Vec<DVec3> =
-            halves.iter().zip(whole).map(|(halves, whole)| *halves + (*halves - *whole)).collect();
-        if self.flow().breaks(start, &beyond) { halves } else { beyond }
+        let beyond = |(halves, whole): (&DVec3, &DVec3)| *halves + (*halves - *whole);
+        let mut end: Vec<DVec3> = halves.iter().zip(whole).map(beyond).collect();
+        loop {
+            // What goes too far that way stays where the halves lead.
+            let mut is_changed = false;
+            for point in self.flow().broken_on_way(start, &end).into_iter().flatten() {
+                let point = point as usize;
+                is_changed |= end[point] != halves[point];
+                end[point] = halves[point];
+            }
+            if !is_changed {
+                return end;
+            }
+        }
     }
 
     fn volumes(&self, points: &Vec<DVec3>) -> Vec<f64> {
@@ -158,25 +187,27 @@ impl Front for Sheets<'_> {
         self.points = points;
     }
 
-    fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened {
+    fn pass(&mut self, volumes: &[f64], mean: f64) -> Result<Happened, NetworkError> {
         let mut small: Vec<(f64, u32)> = volumes.iter().copied().zip(0u32..).collect();
         small.retain(|(volume, cell)| {
             *volume < self.growth.vanished * mean && self.complex.faces_of_cell(CellId(*cell)).len() > 0
         });
         small.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut vanished = Vec::new();
-        for (_, cell) in small {
-            if self.vanish(CellId(cell)) {
+        let mut volumes = volumes.to_vec();
+        for (volume, cell) in small {
+            if let Some(heir) = self.vanish(CellId(cell)) {
                 vanished.push(GrainId(cell));
+                volumes[cell as usize] = 0.0;
+                volumes[heir.index()] += volume;
                 self.follow_complex();
             }
         }
-        let volumes = if vanished.is_empty() { volumes.to_vec() } else { self.volumes_now() };
         let left = volumes.iter().filter(|volume| **volume != 0.0).count();
         let domain = self.complex.domain();
         let unit = self.tuning.small_grain * mean_grain_size(domain, left);
-        self.reconnector
-            .measure_by(SHORT * feature_size(domain, left), LocalSize::new(domain.dimension(), unit));
+        let size = LocalSize::new(domain.dimension(), unit);
+        self.reconnector.measure_by(SHORT * feature_size(domain, left), size);
         let pressures = vec![0.0; volumes.len()];
         let conditions = Conditions {
             shape: &self.shape,
@@ -191,7 +222,10 @@ impl Front for Sheets<'_> {
         } else {
             self.points = self.shape.points(&self.complex, &self.fans);
         }
-        Happened { vanished, reconnections }
+        if reconnections != Reconnections::default() || !vanished.is_empty() {
+            self.restore(&volumes, size)?;
+        }
+        Ok(Happened { vanished, reconnections })
     }
 
     fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {

@@ -9,8 +9,11 @@
 pub struct GrowthTuning {
     /// Distance of points along boundaries in the plane. Half of it halves the errors of rates and doubles the work.
     pub spacing: f64,
-    /// Largest difference of a grain's volume after a step and after two of half its time. Steps are as long as this allows.
-    pub largest_error: f64,
+    /// Largest difference of a grain's area in the plane after a step and after two of half its time. Steps are as long as this allows.
+    pub largest_error_in_plane: f64,
+    /// The same of its volume in space, where grains that are about to vanish are as many as those that last. With 3e-3, the rates of half of all grains are off
+    /// the law of MacPherson and Srolovitz by more than 2.7 % instead of 0.8 %, and growth takes half as long.
+    pub largest_error_in_space: f64,
     /// Length of an edge in the plane that shrinks, below which its ends switch neighbours.
     pub short: f64,
     /// Volume of a grain below which it vanishes: with three sides it would last in the plane for a third of that.
@@ -21,6 +24,13 @@ pub struct GrowthTuning {
 
 impl Default for GrowthTuning {
     fn default() -> Self {
-        Self { spacing: 0.1, largest_error: 3e-3, short: 0.05, vanished: 2e-3, smoothing: 0.05 }
+        Self {
+            spacing: 0.1,
+            largest_error_in_plane: 3e-3,
+            largest_error_in_space: 8e-4,
+            short: 0.05,
+            vanished: 2e-3,
+            smoothing: 0.05,
+        }
     }
 }

@@ -300,3 +300,30 @@ fn a_tetrahedron_becomes_a_point_whichever_of_its_faces_goes() {
         assert_eq!(inside.filter(|vertex| after.vertices()[vertex.index()].min_element() > 0.1).count(), 1);
     }
 }
+
+/// So it is on an edge of the domain, between a cell and that same cell beyond a period.
+#[test]
+fn a_tetrahedron_becomes_a_point_between_a_cell_and_its_image() {
+    let domain = Domain::unit_cube().with_periods(BVec3::new(true, false, false));
+    let seeds = [DVec3::splat(0.5), DVec3::new(0.0, 0.9, 0.1)];
+    let cells = Tessellation::power(&domain, &seeds, &[0.0, -0.5]).expect("valid seeds");
+    let complex = CellComplex::from(&cells);
+    let faces: Vec<FaceId> = complex.faces_of_cell(CellId(1)).collect();
+    assert_eq!(faces.len(), 4);
+    let inside =
+        faces.into_iter().filter(|face| complex.sides(*face).iter().all(|side| side.cell().is_some()));
+    let mut done = 0;
+    for face in inside {
+        let mut complex = complex.clone();
+        assert!(complex.cell_to_neighbor_across(CellId(1), face, true));
+        let (after, _) = complex.tessellation();
+        // Four walls, and from both sides the face between the cell and its image; of the tetrahedron one corner is left, on an edge of the domain.
+        let own: Vec<FaceId> = after.cell_faces(CellId(0)).to_vec();
+        let corners = own.iter().map(|face| after.face_corners(*face).len());
+        assert_eq!(corners.collect::<Vec<_>>(), [4; 6]);
+        assert_eq!(after.vertices().len(), 8);
+        assert!(after.cell_faces(CellId(1)).is_empty());
+        done += 1;
+    }
+    assert_eq!(done, 2);
+}
