@@ -249,7 +249,7 @@ fn change_topology(
         levels: family.levels,
         tension: &|boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 },
     };
-    let relaxed = relax_cells_tuned(cells, &recipe, &row.relaxation, tuning, |_| ());
+    let relaxed = relax_cells_tuned(cells, &recipe, &row.relaxation, tuning, &mut |_| ());
     let RelaxedCells { network, relaxed, points, attempts, .. } =
         relaxed.map_err(|error| error.to_string())?;
     check_nothing_given_up(attempts.first().or(relaxed.given_up.first()))?;
@@ -270,7 +270,7 @@ fn keep_topology(
             .map_err(text)?;
     let network = network.with_cell_volumes(cells.cell_measures().iter().map(|cell| cell.volume).collect());
     let relaxed =
-        relax_tuned(&network, &flat, &row.relaxation, Volumes::Kept, tuning, |_| ()).map_err(text)?;
+        relax_tuned(&network, &flat, &row.relaxation, Volumes::Kept, tuning, &mut |_| ()).map_err(text)?;
     check_nothing_given_up(relaxed.given_up.first().or(regular.given_up.first()))?;
     let points = relaxed.finest_points(&network);
     Ok((network, points))

@@ -128,7 +128,7 @@ fn grow(
     let unit = domain.dimension().cube_edge(1.0 / setting.grains as f64).powi(2);
     let mut last: Option<(f64, Vec<Grain>)> = None;
     let mut failed = None;
-    let watch = |step: RelaxationStep<'_>| {
+    let mut watch = |step: RelaxationStep<'_>| {
         let Moving::Grains(make) = step.now else { unreachable!("grains grow") };
         let (network, points) = match make() {
             Ok(made) => made,
@@ -158,7 +158,7 @@ fn grow(
         }
         last = Some((step.time, now));
     };
-    match grow_cells_tuned(&cells, &recipe, setting.time, tuning, watch) {
+    match grow_cells_tuned(&cells, &recipe, setting.time, tuning, &mut watch) {
         Ok(grown) => {
             sum.steps += grown.cells.relaxed.steps;
             for (left, time) in sum.left.iter_mut().zip(setting.times()) {

@@ -42,7 +42,7 @@ const STEPS: usize = 2000;
 pub(crate) fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     let areas: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let complex = CellComplex::from(tessellation);
@@ -157,7 +157,7 @@ impl SmoothEdges {
         recipe: &NetworkRecipe<'_>,
         states: Vec<Vec<f64>>,
         mut descent: Descent,
-        watch: &mut impl FnMut(RelaxationStep<'_>),
+        watch: &mut dyn FnMut(RelaxationStep<'_>),
     ) -> Result<Relaxed, NetworkError> {
         let faces = edges.complex.faces();
         let chords = |face| self.chords[faces.binary_search(&face).expect("numbers do not change")];

@@ -80,9 +80,9 @@ pub fn grow_cells(
     cells: &Tessellation,
     recipe: &GrowthRecipe<'_>,
     time: f64,
-    watch: impl FnMut(RelaxationStep<'_>),
+    mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<GrownCells, NetworkError> {
-    grow_cells_tuned(cells, recipe, time, &GrowthTuning::default(), watch)
+    grow_cells_tuned(cells, recipe, time, &GrowthTuning::default(), &mut watch)
 }
 
 /// As [`grow_cells`], with other numbers than the tuned ones.
@@ -95,7 +95,7 @@ pub fn grow_cells_tuned(
     recipe: &GrowthRecipe<'_>,
     time: f64,
     tuning: &GrowthTuning,
-    mut watch: impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<GrownCells, NetworkError> {
     Relaxation::Time(time).check()?;
     let tensions = Unit::of(cells, recipe.network.tension, checked_tension)?;
@@ -109,12 +109,12 @@ pub fn grow_cells_tuned(
     let (mut cells, vanished) = match cells.domain().dimension() {
         Dimension::Two => {
             let front = Curves::new(cells, &in_units, tuning);
-            grow(front, cells, time, tuning.largest_error_in_plane, &mut watch)
+            grow(front, cells, time, tuning.largest_error_in_plane, watch)
         }
         Dimension::Three if time == 0.0 => Ok((still(cells, &network, &of_relaxation)?, Vec::new())),
         Dimension::Three => {
             let front = Sheets::new(cells, &in_units, tuning, &of_relaxation);
-            grow(front, cells, time, tuning.largest_error_in_space, &mut watch)
+            grow(front, cells, time, tuning.largest_error_in_space, watch)
         }
     }?;
     cells.network = cells.network.with_tensions(recipe.network.tension)?.with_mobilities(recipe.mobility)?;
@@ -127,7 +127,7 @@ fn grow(
     cells: &Tessellation,
     time: f64,
     largest_error: f64,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<(RelaxedCells, Vec<Vanished>), NetworkError> {
     let History { steps, reconnections, vanished } =
         if time > 0.0 { advance(&mut front, cells, time, largest_error, watch)? } else { History::default() };

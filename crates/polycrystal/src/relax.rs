@@ -76,9 +76,9 @@ pub fn relax_watched(
     control_points: &[DVec3],
     relaxation: &Relaxation,
     volumes: Volumes,
-    watch: impl FnMut(RelaxationStep<'_>),
+    mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
-    relax_tuned(network, control_points, relaxation, volumes, &Tuning::default(), watch)
+    relax_tuned(network, control_points, relaxation, volumes, &Tuning::default(), &mut watch)
 }
 
 /// As [`relax_watched`], with other numbers than the tuned ones.
@@ -92,10 +92,10 @@ pub fn relax_tuned(
     relaxation: &Relaxation,
     volumes: Volumes,
     tuning: &Tuning,
-    mut watch: impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
     let plan = plan_of(network, relaxation, volumes, tuning);
-    relax_levels(network, control_points, &plan, &mut watch, |_| Ok(())).map(|(relaxed, ())| relaxed)
+    relax_levels(network, control_points, &plan, watch, &|_| Ok(())).map(|(relaxed, ())| relaxed)
 }
 
 /// As [`relax_watched`], and the finest level certified. Where it is not valid, as triangles cross, coarser points have to do.
@@ -111,7 +111,7 @@ pub fn relax_certified(
 ) -> Result<(Relaxed, Certified), NetworkError> {
     let tuning = Tuning::default();
     let plan = plan_of(network, relaxation, volumes, &tuning);
-    relax_levels(network, control_points, &plan, &mut watch, |relaxed| {
+    relax_levels(network, control_points, &plan, &mut watch, &|relaxed| {
         Certified::new(network, relaxed, volumes)
     })
 }
@@ -139,8 +139,9 @@ fn relax_levels<T>(
     network: &Network,
     control_points: &[DVec3],
     plan: &Plan<'_>,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
-    accept: impl Fn(&Relaxed) -> Result<T, NetworkError>,
+    // Not generic from here on: the closure of each caller would compile all of this once more.
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
+    accept: &dyn Fn(&Relaxed) -> Result<T, NetworkError>,
 ) -> Result<(Relaxed, T), NetworkError> {
     let Plan { relaxation, start, volumes, tuning, tension_unit } = *plan;
     let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
@@ -278,7 +279,7 @@ mod tests {
         let plan = plan_of(&network, &relaxation, Volumes::Kept, &tuning);
         let crossing = || NetworkError::Invalid(Faults(vec![Fault::NoArea { element: 7 }]));
         let relaxed = |finest: usize| {
-            relax_levels(&network, &flat, &plan, &mut |_| (), |relaxed| {
+            relax_levels(&network, &flat, &plan, &mut |_| (), &|relaxed| {
                 if relaxed.level > finest { Err(crossing()) } else { Ok(relaxed.level) }
             })
         };
@@ -294,7 +295,7 @@ mod tests {
         let is_moved = |coarse: &Relaxed| coarse.points.iter().zip(&flat).any(|(a, b)| a != b);
         assert!(is_moved(&coarse));
         // A flat start is not relaxed: where no level will do there is none.
-        let error = relax_levels(&network, &flat, &plan, &mut |_| (), |_| Err::<(), _>(crossing()));
+        let error = relax_levels(&network, &flat, &plan, &mut |_| (), &|_| Err::<(), _>(crossing()));
         let (attempts, last) = error.expect_err("nothing is accepted").into_attempts();
         assert_eq!((attempts.len(), last.to_string()), (1, crossing().to_string()));
     }

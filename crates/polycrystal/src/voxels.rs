@@ -98,7 +98,7 @@ pub fn smooth_voxels(
     options: VoxelOptions,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
-    smooth_voxels_tuned(voxels, options, &VoxelTuning::default(), progress)
+    smooth_voxels_tuned(voxels, options, &VoxelTuning::default(), &progress)
 }
 
 /// As [`smooth_voxels`], by other numbers than its own.
@@ -107,7 +107,7 @@ pub fn smooth_voxels_tuned(
     voxels: Voxels,
     options: VoxelOptions,
     tuning: &VoxelTuning,
-    progress: impl Fn(usize, usize) + Sync,
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<SmoothedVoxels, NetworkError> {
     let (staircase, counts, relabelled) = {
         let mut lattice = Lattice::new(&voxels)?;
@@ -123,7 +123,7 @@ pub fn smooth_voxels_tuned(
     let sides = sides_of_whole_grains(&kinds, is_periodic);
     let counts: Vec<f64> = counts.iter().map(|count| *count as f64).collect();
     let wanted = Wanted { volumes: &counts, sides: &sides };
-    let whole = smoothed(staircase, &grid, &wanted, tuning, &progress);
+    let whole = smoothed(staircase, &grid, &wanted, tuning, progress);
     let voxel = grid.spacing().element_product();
     let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
     let network = |found: &VoxelSurface| -> Result<SmoothedVoxels, (NetworkError, Faulty)> {
@@ -182,7 +182,7 @@ fn smoothed(
     grid: &Grid,
     wanted: &Wanted<'_>,
     tuning: &VoxelTuning,
-    progress: &(impl Fn(usize, usize) + Sync),
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> VoxelSurface {
     let boxes = Boxes::new(&staircase.places, grid, tuning.within);
     let (graph, starts) = {

@@ -122,7 +122,7 @@ impl<'a> Flow<'a> {
         &mut self,
         start: &[DVec3],
         stage: &Stage,
-        progress: &mut impl FnMut(usize, &[DVec3]),
+        progress: &mut dyn FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let groups = self.groups.clone();
         match self.run_from(start, stage, OnFold::GiveWay, progress) {
@@ -140,7 +140,7 @@ impl<'a> Flow<'a> {
         start: &[DVec3],
         stage: &Stage,
         folded: OnFold,
-        progress: &mut impl FnMut(usize, &[DVec3]),
+        progress: &mut dyn FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
         let finest = self.finest_sectors();

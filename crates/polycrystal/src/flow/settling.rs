@@ -45,7 +45,7 @@ pub(crate) fn settle(
     volumes: &[f64],
     relaxation: &Relaxation,
     tuning: &Tuning,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<Settled, NetworkError> {
     let (count, step_time) = match *relaxation {
         Relaxation::Time(time) => equal_steps(time, tuning.cell_step_time),

@@ -70,7 +70,7 @@ pub(super) fn advance<F: Front>(
     cells: &Tessellation,
     whole_time: f64,
     largest_error: f64,
-    mut watch: impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<History, NetworkError> {
     let mut history = History::default();
     let domain = cells.domain();

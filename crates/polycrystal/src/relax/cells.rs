@@ -41,9 +41,9 @@ pub fn relax_cells(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
     relaxation: &Relaxation,
-    watch: impl FnMut(RelaxationStep<'_>),
+    mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
-    relax_cells_tuned(tessellation, recipe, relaxation, &Tuning::default(), watch)
+    relax_cells_tuned(tessellation, recipe, relaxation, &Tuning::default(), &mut watch)
 }
 
 /// As [`relax_cells`], with other numbers than the tuned ones.
@@ -56,7 +56,7 @@ pub fn relax_cells_tuned(
     recipe: &NetworkRecipe<'_>,
     relaxation: &Relaxation,
     tuning: &Tuning,
-    mut watch: impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     relaxation.check()?;
     let unit = Unit::of(tessellation, recipe.tension, checked_tension)?;
@@ -65,12 +65,12 @@ pub fn relax_cells_tuned(
     let moves = unit.is_of_any && *relaxation != Relaxation::Time(0.0);
     let mut relaxed = match (tessellation.domain().dimension(), relaxation) {
         (voronoi::Dimension::Two, Relaxation::Equilibrium) => {
-            arcs::equilibrate(tessellation, &in_units, &mut watch)
+            arcs::equilibrate(tessellation, &in_units, watch)
         }
         (voronoi::Dimension::Three, _) if moves => {
-            relax_in_space(tessellation, &in_units, relaxation, tuning, &mut watch)
+            relax_in_space(tessellation, &in_units, relaxation, tuning, watch)
         }
-        _ => relax_as_they_are(tessellation, &in_units, relaxation, tuning, &mut watch),
+        _ => relax_as_they_are(tessellation, &in_units, relaxation, tuning, watch),
     }?;
     relaxed.network = relaxed.network.with_tensions(recipe.tension)?;
     Ok(relaxed)
@@ -91,14 +91,14 @@ fn relax_as_they_are(
     recipe: &NetworkRecipe<'_>,
     relaxation: &Relaxation,
     tuning: &Tuning,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     let (network, flat) =
         Network::with_face_mesh(tessellation, recipe.face_mesh, recipe.junctions, recipe.levels)?;
     let network = network.with_tensions(recipe.tension)?;
     let plan = plan(*relaxation, Start::Flat, tuning);
     let certified = |relaxed: &Relaxed| Certified::new(&network, relaxed, Volumes::Kept);
-    let (relaxed, certified) = relax_levels(&network, &flat, &plan, watch, certified)?;
+    let (relaxed, certified) = relax_levels(&network, &flat, &plan, watch, &certified)?;
     Ok(RelaxedCells::of_kept_topology(network, relaxed, certified))
 }
 
@@ -113,7 +113,7 @@ fn relax_in_space(
     recipe: &NetworkRecipe<'_>,
     relaxation: &Relaxation,
     tuning: &Tuning,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, watch)?;
@@ -132,7 +132,7 @@ pub(crate) fn smoothed(
     recipe: &NetworkRecipe<'_>,
     relaxation: Relaxation,
     tuning: &Tuning,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
+    watch: &mut dyn FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     let tuning = match relaxation {
         Relaxation::Time(_) => *tuning,
@@ -161,7 +161,7 @@ pub(crate) fn smoothed(
         };
         let plan = plan(relaxation, start, &tuning);
         let certified = |relaxed: &Relaxed| Certified::new(&network, relaxed, Volumes::Kept);
-        let (relaxed, certified) = relax_levels(&network, &points, &plan, &mut watch_later, certified)?;
+        let (relaxed, certified) = relax_levels(&network, &points, &plan, &mut watch_later, &certified)?;
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
         let cells = RelaxedCells::of_kept_topology(network, relaxed, certified);

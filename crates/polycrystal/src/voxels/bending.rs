@@ -139,7 +139,7 @@ pub(super) fn least_bending(
     starts: &[Vec3],
     boxes: &Boxes<'_>,
     tuning: &VoxelTuning,
-    progress: &(impl Fn(usize, usize) + Sync),
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Vec<DVec3> {
     let count = graph.count();
     let row = |point: usize| Row::new(graph, boxes, point);

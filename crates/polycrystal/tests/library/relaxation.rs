@@ -465,7 +465,7 @@ proptest! {
         let mean_point_and_volumes = |seeds: &[DVec3]| {
             let (network, flat) = network(&Domain::unit_cube(), seeds, 1);
             let (time, kept) = (Relaxation::KEPT_TOPOLOGY, Volumes::Kept);
-            let flow = relax_tuned(&network, &flat, &time, kept, &not_widened, |_| ()).expect("relaxes");
+            let flow = relax_tuned(&network, &flat, &time, kept, &not_widened, &mut |_| ()).expect("relaxes");
             let points = flow.finest_points(&network);
             let volumes = network.grain_volumes(network.finest(), &relaxed(&network, &flat));
             (points.iter().sum::<DVec3>() / points.len() as f64, volumes)

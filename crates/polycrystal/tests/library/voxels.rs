@@ -303,7 +303,7 @@ fn points_around_crossings_stay() {
         let mut seed = || DVec3::new(fraction(), fraction(), fraction()) * 24.0;
         let seeds: Vec<DVec3> = (0..60).map(|_| seed()).collect();
         let map = nearest_of(&seeds, [24, 24, 24]);
-        let few = smooth_voxels_tuned(map.clone(), options, &tuning, |_, _| ()).expect("a network");
+        let few = smooth_voxels_tuned(map.clone(), options, &tuning, &|_, _| ()).expect("a network");
         let all = smoothed(&map);
         check_surface(&few);
         assert!(4 * few.points.len() < all.points.len(), "{} of {}", few.points.len(), all.points.len());

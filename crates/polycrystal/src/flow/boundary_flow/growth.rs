@@ -55,7 +55,7 @@ impl Flow<'_> {
         &mut self,
         start: &[DVec3],
         whole_time: f64,
-        mut progress: impl FnMut(Grown<'_>),
+        progress: &mut dyn FnMut(Grown<'_>),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let longest =
             TIME_OF_KEPT_TOPOLOGY / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
