@@ -1,6 +1,7 @@
 //! Checks that every kind of mesh makes of what it is given.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
@@ -62,10 +63,12 @@ pub(crate) fn check_corners(vertex_count: usize, features: &Features) -> Result<
 }
 
 /// Whether no two faces have the same vertices; `sorted_faces` are the vertices of each face, sorted.
-pub(crate) fn check_duplicates<Face: Ord>(sorted_faces: impl Iterator<Item = Face>) -> Result<(), MeshError> {
+pub(crate) fn check_duplicates<Face: Ord + Send>(
+    sorted_faces: impl Iterator<Item = Face>,
+) -> Result<(), MeshError> {
     let mut faces: Vec<(Face, FaceId)> =
         sorted_faces.enumerate().map(|(f, face)| (face, FaceId(id(f)))).collect();
-    faces.sort_unstable();
+    faces.par_sort_unstable();
     let equal = faces.windows(2).filter(|pair| pair[0].0 == pair[1].0);
     match equal.map(|pair| (pair[0].1, pair[1].1)).min() {
         Some((first, second)) => Err(MeshError::DuplicateFace { first, second }),

@@ -1,5 +1,7 @@
 //! From a list of triangles to connectivity: the one place that searches and sorts.
 
+use rayon::prelude::*;
+
 use crate::edge_table::EdgeTable;
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
@@ -87,7 +89,7 @@ impl TriangleMesh {
                 || !matches!(non_manifold[vertex as usize], 0 | 2)
                 || (boundary == BoundaryRule::EdgeCorner && triangles == 1)
         };
-        (0..id(self.vertex_count())).filter(is_fixed).collect()
+        (0..id(self.vertex_count())).into_par_iter().filter(is_fixed).collect()
     }
 }
 

@@ -143,8 +143,9 @@ pub(crate) fn inspect(
     let faults = &mut certificate.faults.0;
     faults.extend(survey.flat.iter().map(|element| Fault::NoArea { element: *element }));
     // Each of these runs for the most part on one thread.
-    let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
-        || crossing_elements(surface, adjacency, &boundaries, &survey.boxes),
+    let of_angles = || AngleStatistics::of(angles(surface, surface.sides, adjacency.non_manifold_edges()));
+    let ((crossing, angles), ((meetings, duplicates), (closing, is_closed))) = rayon::join(
+        || rayon::join(|| crossing_elements(surface, adjacency, &boundaries, &survey.boxes), of_angles),
         || {
             rayon::join(
                 || (meetings(surface), duplicate_points(surface.points)),
@@ -152,6 +153,7 @@ pub(crate) fn inspect(
             )
         },
     );
+    certificate.angles = angles;
     faults.extend(duplicates.map(|points| Fault::DuplicatePoints { points }));
     let orphans = (0..id(meetings.len())).filter(|point| meetings[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
@@ -169,7 +171,6 @@ pub(crate) fn inspect(
     certificate.grain_volumes = grain_volumes(surface, &survey.cones);
     let areas = if expected.rounding > 0.0 { side_areas(surface, &survey.areas) } else { BTreeMap::new() };
     certificate.check_volumes(surface, &areas, expected, is_closed);
-    certificate.angles = AngleStatistics::of(angles(surface, surface.sides, adjacency.non_manifold_edges()));
     certificate
 }
 

@@ -6,6 +6,7 @@
 
 use cancellation::check_cancelled;
 use glam::DVec3;
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
@@ -80,7 +81,8 @@ impl Fans {
         for face in &faces {
             starts.push(starts[starts.len() - 1] + 2 * complex.corners(*face).len() + 1);
         }
-        let mut slots = vec![Slot { point: 0, offset: DVec3::ZERO }; starts[faces.len()]];
+        let slot_count = starts[faces.len()];
+        let mut slots: Vec<Slot> = repeat_n(Slot { point: 0, offset: DVec3::ZERO }, slot_count).collect();
         let fill = |(fan, slots): (usize, &mut [Slot])| {
             let slot = |point: usize, translation: Translation| Slot {
                 point: id(point),
@@ -217,7 +219,8 @@ impl Fans {
 
     /// Of each slot of a rim the normal of the triangle that begins there, twice as long as its area; of centres nothing.
     pub(crate) fn normals(&self, points: &[DVec3]) -> Vec<DVec3> {
-        let mut normals = vec![DVec3::ZERO; self.slots.len()];
+        // All threads write first, as well: the system hands memory out to where that happens, and takes its time.
+        let mut normals: Vec<DVec3> = repeat_n(DVec3::ZERO, self.slots.len()).collect();
         let fill = |(fan, normals): (usize, &mut [DVec3])| {
             let ring = self.ring(fan, points);
             let count = ring.len() - 1;
@@ -256,7 +259,7 @@ impl Fans {
 
     /// What a step needs to know, with no cotangent above the given one.
     pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> FanTerms {
-        let mut of_slot = vec![SlotTerms::default(); self.slots.len()];
+        let mut of_slot: Vec<SlotTerms> = repeat_n(SlotTerms::default(), self.slots.len()).collect();
         let fill = |(fan, terms): (usize, &mut [SlotTerms])| {
             check_cancelled();
             fill_terms(&self.ring(fan, points), self.tensions[fan], largest_cotangent, terms)

@@ -1,6 +1,7 @@
 //! Which grains come together and which part.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cancellation::check_cancelled;
 use glam::DVec3;
@@ -217,20 +218,23 @@ impl Reconnector {
         let mut copies = std::mem::take(&mut self.copies);
         copies.catch_up(complex, threads);
         for places in places.chunks(together) {
-            let share = places.len().div_ceil(threads);
-            let look_ahead = |((copy, known), places): (&mut (CellComplex, usize), &[Place])| {
+            // Some places take far longer than others: who is done takes the next.
+            let next = AtomicUsize::new(0);
+            let look_ahead = |(copy, known): &mut (CellComplex, usize)| {
                 follow(copy, known, &copies.carried_out);
-                let look = |place: &Place| {
+                let take =
+                    || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|taken| *taken < places.len());
+                let look = |taken: usize| {
                     check_cancelled();
-                    let cells = place.cells(copy);
-                    (cells, self.decide(*place, copy, around, excess))
+                    let cells = places[taken].cells(copy);
+                    (taken, cells, self.decide(places[taken], copy, around, excess))
                 };
-                places.iter().map(look).collect::<Vec<_>>()
+                std::iter::from_fn(take).map(look).collect::<Vec<_>>()
             };
-            let shares = copies.complexes.par_iter_mut().zip(places.par_chunks(share));
-            let ahead: Vec<_> = shares.map(look_ahead).collect();
+            let mut ahead: Vec<_> = copies.complexes.par_iter_mut().flat_map_iter(look_ahead).collect();
+            ahead.sort_unstable_by_key(|(taken, ..)| *taken);
             let mut changed: HashSet<CellId> = HashSet::new();
-            for (place, (mut cells, mut decision)) in places.iter().zip(ahead.into_iter().flatten()) {
+            for (place, (_, mut cells, mut decision)) in places.iter().zip(ahead) {
                 if cells.iter().any(|cell| changed.contains(cell)) {
                     cells = place.cells(complex);
                     decision = self.decide(*place, complex, around, excess);

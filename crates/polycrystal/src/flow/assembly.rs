@@ -46,9 +46,12 @@ pub(crate) fn assemble(
     };
     let freedoms = freedoms(network, unknowns);
     let softness_root = softness_root(unknowns, volumes);
+    let by_group =
+        (volumes == Volumes::Kept).then(|| volume_gradients(network, patches, terms, unknowns, &freedoms));
+    // To transpose a matrix takes one thread.
     let (stiffness, constraint) = rayon::join(
         || CsrRows::made_of_sums(groups.group_count(), row, softened(&softness_root)),
-        || (volumes == Volumes::Kept).then(|| constraint(network, patches, terms, unknowns, &freedoms)),
+        || by_group.map(|by_group| VolumeConstraint::new(by_group, network.grain_count())),
     );
     Parts {
         masses: masses(patches, terms, unknowns),
@@ -72,7 +75,8 @@ pub(crate) fn pressure_response(
     unknowns: &Unknowns<'_>,
 ) -> PressureResponse {
     let freedoms = freedoms(network, unknowns);
-    let constraint = constraint(network, patches, terms, unknowns, &freedoms);
+    let by_group = volume_gradients(network, patches, terms, unknowns, &freedoms);
+    let constraint = VolumeConstraint::new(by_group, network.grain_count());
     PressureResponse::new(&masses(patches, terms, unknowns), &freedoms, Some(constraint))
 }
 
@@ -112,14 +116,14 @@ fn masses(patches: &Patches, terms: &Terms, Unknowns { sizes, groups, .. }: &Unk
     in_chunks(groups).map(mass).collect()
 }
 
-/// How the volumes of grains follow groups with these freedoms.
-fn constraint(
+/// The gradients of the volumes of grains, of groups with these freedoms.
+fn volume_gradients(
     network: &Network,
     patches: &Patches,
     terms: &Terms,
     Unknowns { points, groups, .. }: &Unknowns<'_>,
     freedoms: &[Freedom],
-) -> VolumeConstraint {
+) -> CsrRows<DVec3> {
     let fill = |group: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
         for place in groups.places(group, patches) {
             let boundary = &network.boundaries()[patches.patch_of_place(place)];
@@ -132,7 +136,7 @@ fn constraint(
             }
         }
     };
-    VolumeConstraint::new(freedoms, network.grain_count(), last_place(points), fill)
+    VolumeConstraint::by_group(freedoms, last_place(points), fill)
 }
 
 /// The gradient of the energy by the displacement of each group.

@@ -144,15 +144,16 @@ impl FanFlow<'_> {
         let of_junction = self.tuning.junction_softness.sqrt();
         // Walls have tension here, so that lines on them are junctions too.
         let softness_root = self.of_points(|point| if point < fans.center_of(0) { of_junction } else { 1.0 });
-        let constraint = || match self.motion {
+        let constraint = match self.motion {
             Motion::Kept { volumes, .. } => {
-                Some(VolumeConstraint::new(freedoms, volumes.len(), rounding, volume_gradients))
+                Some((VolumeConstraint::by_group(freedoms, rounding, volume_gradients), volumes.len()))
             }
             Motion::Free { .. } => None,
         };
+        // To transpose a matrix takes one thread.
         let (stiffness, volumes) = rayon::join(
             || CsrRows::made_of_sums(fans.point_count(), stiffness, softened(&softness_root)),
-            constraint,
+            || constraint.map(|(by_group, grain_count)| VolumeConstraint::new(by_group, grain_count)),
         );
         Parts {
             masses: self.masses(terms),

@@ -35,22 +35,25 @@ pub(crate) struct VolumeConstraint {
 }
 
 impl VolumeConstraint {
-    /// That of so many grains and of groups with these freedoms: `fill` adds up the gradients of a group. `rounding` is a last place of
-    /// the points.
-    pub(crate) fn new(
+    /// That of so many grains, given [`Self::by_group`].
+    pub(crate) fn new(by_group: CsrRows<DVec3>, grain_count: usize) -> Self {
+        let by_grain = by_group.transposed(grain_count);
+        Self { by_group, by_grain }
+    }
+
+    /// Of groups with these freedoms the grains and the gradients of their volumes: `fill` adds up those of a group. `rounding` is a last place
+    /// of the points.
+    pub(crate) fn by_group(
         freedoms: &[Freedom],
-        grain_count: usize,
         rounding: f64,
         fill: impl Fn(usize, &mut VolumeGradients<'_, '_>) + Sync,
-    ) -> Self {
+    ) -> CsrRows<DVec3> {
         let row = |group: usize, row: &mut NewRow<'_, DVec3>| {
             let mut volume_gradients = VolumeGradients { row, length: 0.0 };
             fill(group, &mut volume_gradients);
             volume_gradients.finish(rounding, freedoms[group]);
         };
-        let by_group = CsrRows::made_by(freedoms.len(), row);
-        let by_grain = by_group.transposed(grain_count);
-        Self { by_group, by_grain }
+        CsrRows::made_by(freedoms.len(), row)
     }
 
     /// The change of each grain's volume under displacements, given group by group: `J d`.
