@@ -433,3 +433,27 @@ fn lines_that_stay_polylines_around_grains_of_several_cells_do_not_fold() {
     );
     workplace.command("check a.vtp").assert().success();
 }
+
+/// Two folds of the coarsest level were left, and no finer one was tried: failure 20261150:73 of the campaign.
+#[test]
+fn what_is_folded_on_a_coarse_level_may_unfold_on_a_finer_one() {
+    let workplace = Workplace::new();
+    let said = workplace.run(
+        "--periodic x,y,z --box 1.9930706795057997 0.7475982866150229 0.3785051421739986 --seeds 67 --rng-seed 616828 --relax equilibrium --junctions corner \
+         --phase a:0.95,diameters=lognormal(mean=3,cv=0.3) --phase b:0.05,diameters=equal(1),place=quadruple-points -o a.vtp",
+    );
+    assert!(!said.contains("\ngiven up "), "{said}");
+    workplace.command("check a.vtp").assert().success();
+}
+
+/// Where grains do not come to rest, as they cannot switch neighbours, they go as far as they do in the usual time: failure 20261150:205 of the campaign.
+#[test]
+fn grains_that_cannot_come_to_rest_relax_for_a_time() {
+    let workplace = Workplace::new();
+    let said = workplace.run(
+        "--dim 2 --periodic x,y --seeds 22 --rng-seed 139044 --relax equilibrium -n 0 --phase a:0.9,diameters=lognormal(mean=3,cv=0.3) \
+         --phase b:0.1,diameters=equal(1),place=interior -o a.vtp",
+    );
+    assert!(said.contains("\ngiven up    moving the points of level 0 to rest: "), "{said}");
+    workplace.command("check a.vtp").assert().success();
+}

@@ -87,14 +87,18 @@ fn free_grains_change_their_sizes_and_fill_the_box() {
     assert!(free.iter().zip(&kept).any(|(free, kept)| (free / kept - 1.0).abs() > 1e-3));
 }
 
-/// Blocks of grains that have no surface any more were written too: failure 20261130:15 of the campaign with at most 40 grains.
+/// Blocks of grains that have no surface any more were written too: failure 20261130:15 of the campaign with at most 40 grains. Their files led to a panic: 20261128:156.
 #[test]
-fn blocks_leave_out_grains_that_vanished() {
+fn blocks_and_files_of_grains_leave_out_those_that_vanished() {
     let workplace = Workplace::new();
-    let said = workplace.run("--seeds 20 --seeding random --rng-seed 1 -n 1 --free -o a.vtm");
+    let said =
+        workplace.run("--seeds 20 --seeding random --rng-seed 1 -n 1 --free -o a.vtm --grains-dir each");
     assert!(said.contains("vanished    1 of 20 grains"), "{said}");
     let ids: BTreeSet<i32> = integers(&workplace.path("a/grains.vtp"), "GrainId").into_iter().collect();
     assert_eq!(ids.len(), 19);
+    let files = fs::read_dir(workplace.path("each")).unwrap().map(|file| file.unwrap().file_name());
+    let of_ids = ids.iter().map(|id| format!("grain_{id}.vtp").into());
+    assert_eq!(files.collect::<BTreeSet<_>>(), of_ids.collect());
 }
 
 /// Grains that are left keep their numbers, whatever becomes of others.

@@ -134,7 +134,8 @@ struct Plan<'a> {
 
 /// As [`relax_tuned`], by a plan, and what `accept` makes of the result.
 ///
-/// Where the points of a level tangle, or what they lead to is not accepted, those of the level before have to do, and the result tells why.
+/// Where the points of a level tangle, or what they lead to is not accepted, those of the level before have to do, and the result tells why. What does not come to rest goes
+/// as far as in the usual time.
 fn relax_levels<T>(
     network: &Network,
     control_points: &[DVec3],
@@ -195,56 +196,70 @@ fn relax_levels<T>(
         time: 0.0,
         now: Moving::Points { level: 0, points: control_points },
     });
-    // What will do where finer points tangle, the coarser ones first. A start whose own level moves will not: it is not relaxed.
+    // The start, and where the points of each level come to.
     let mut good = vec![Relaxed::new(0, control_points.to_vec())];
-    let unmoved = usize::from(first == 0);
-    let mut level = first;
-    let mut result = loop {
-        let before = good.last().expect("there is a start");
+    let timed = |level: usize, end: End| {
         let steps = if level == first { first_steps } else { tuning.fine_steps };
-        let end = if level == last { End::Finished } else { End::Open };
-        let stage = match relaxation {
-            Relaxation::Equilibrium if level == last => {
-                let share = if is_in_space { REST_STEP / TIME_OF_KEPT_TOPOLOGY } else { 1.0 };
-                let step_time = share * whole_time;
-                Stage { step_time, steps: REST_STEPS, least_gain: Relaxation::LEAST_GAIN, end }
-            }
-            _ => Stage { step_time: whole_time / steps as f64, steps, least_gain: 0.0, end },
-        };
-        let mut passed = before.time;
+        Stage { step_time: whole_time / steps as f64, steps, least_gain: 0.0, end }
+    };
+    let last_stage = match relaxation {
+        Relaxation::Equilibrium => {
+            let share = if is_in_space { REST_STEP / TIME_OF_KEPT_TOPOLOGY } else { 1.0 };
+            let (step_time, least_gain) = (share * whole_time, Relaxation::LEAST_GAIN);
+            Stage { step_time, steps: REST_STEPS, least_gain, end: End::Finished }
+        }
+        Relaxation::Time(_) => timed(last, End::Finished),
+    };
+    // Moves the points of a level from where those of the level before have come.
+    let run = |before: &Relaxed, level: usize, stage: &Stage, watch: &mut dyn FnMut(RelaxationStep<'_>)| {
+        let (mut steps, mut passed) = (before.steps, before.time);
         let mut show = |done: usize, points: &[DVec3]| {
+            steps = before.steps + done;
             passed = before.time + done as f64 * time * (stage.step_time / whole_time);
             let now = Moving::Points { level, points };
-            watch(RelaxationStep { done: before.steps + done, count, time: passed, now });
+            watch(RelaxationStep { done: steps, count, time: passed, now });
         };
         let start = network.subdivide_between(before.level, level, &before.points);
-        let run = flow(level).run(&start, &stage, &mut show);
-        let relaxed = run.map(|points| Relaxed {
-            steps: before.steps + steps,
-            time: passed,
-            ..Relaxed::new(level, points)
-        });
-        match relaxed {
-            Ok(relaxed) if level < last => {
-                good.push(relaxed);
-                level += 1;
-            }
-            end => break end.and_then(accepted),
-        }
+        let points = flow(level).run(&start, stage, &mut show)?;
+        Ok(Relaxed { steps, time: passed, ..Relaxed::new(level, points) })
     };
+    let mut level = first;
+    let mut result = loop {
+        let before = &good[good.len() - 1];
+        if level == last {
+            break run(before, level, &last_stage, watch).and_then(accepted);
+        }
+        match run(before, level, &timed(level, End::Open), watch) {
+            Ok(relaxed) => good.push(relaxed),
+            Err(error) => break Err(error),
+        }
+        level += 1;
+    };
+    // Once more as the end, if need be, as then what folds goes back toward where it began: for a time, and of coarser points.
+    let is_timed = usize::from(relaxation != Relaxation::Equilibrium || level < last);
+    let again =
+        (first..=level).rev().skip(is_timed).map(|level| (level - first, level, timed(level, End::Finished)));
+    let as_it_is = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
     let mut given_up = Vec::new();
-    while let Err(error) = result {
-        let coarser = if error.is_tangle() && good.len() > unmoved { good.pop() } else { None };
-        let Some(mut relaxed) = coarser else { return Err(error.after(given_up)) };
-        error.give_up(format!("moving the points of level {level}"), &mut given_up);
-        level = relaxed.level;
-        let end = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
-        result = flow(level).run(&relaxed.points, &end, &mut |_, _| ()).and_then(|points| {
-            relaxed.points = points;
-            accepted(relaxed)
-        });
+    // A start whose own level moves is not relaxed.
+    for (before, coarser, stage) in again.chain((first > 0).then_some((0, 0, as_it_is))) {
+        match result {
+            Err(error) if error.is_tangle() => {
+                let how_far = if coarser == level { " to rest" } else { "" };
+                error.give_up(format!("moving the points of level {level}{how_far}"), &mut given_up);
+            }
+            end => {
+                result = end;
+                break;
+            }
+        }
+        level = coarser;
+        result = run(&good[before], level, &stage, &mut |_| ()).and_then(accepted);
     }
-    result.map(|(relaxed, made)| (Relaxed { given_up, ..relaxed }, made))
+    match result {
+        Ok((relaxed, made)) => Ok((Relaxed { given_up, ..relaxed }, made)),
+        Err(error) => Err(error.after(given_up)),
+    }
 }
 
 /// Where the points of a control mesh in space go in the usual time, as a forecast: volumes are right, triangles may be thin.

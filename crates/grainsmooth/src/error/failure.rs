@@ -60,6 +60,9 @@ impl fmt::Display for Failure {
                 line_name(first)
             );
         }
+        if let Some(Growth::Until(time)) = self.growth {
+            return write!(out, "; --relax {time} works");
+        }
         if self.has_shapes {
             return write!(out, "; give --grain-shapes a lower ratio, or other seeds");
         }
@@ -70,8 +73,7 @@ impl fmt::Display for Failure {
             write!(out, ", too small beside the others")?;
         }
         match (self.growth, self.grain.and_then(|grain| grain.least_diameter())) {
-            (Some(Growth::Until(time)), _) => write!(out, "; --relax {time} works"),
-            (Some(Growth::Never), _) => write!(
+            (Some(_), _) => write!(
                 out,
                 "; no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5"
             ),

@@ -66,7 +66,7 @@ impl Polycrystal {
         }
     }
 
-    /// Completes a file for each grain, `grain_0.vtp` and so on: its closed surface, all normals outward.
+    /// Completes a file for each grain that is left, `grain_0.vtp` and so on: its closed surface, all normals outward.
     ///
     /// # Errors
     /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; [`Error::FormatDimension`] in 2D.
@@ -81,8 +81,9 @@ impl Polycrystal {
         };
         let tuples = self.grain_tuples();
         directory.stage(files, |folder| {
-            let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
-            grains.try_for_each(|(id, parts)| {
+            // What has vanished has no surface.
+            let grains: Vec<_> = (0u32..).zip(&parts).filter(|(_, parts)| !parts.is_empty()).collect();
+            grains.into_par_iter().try_for_each(|(id, parts)| {
                 let surface = network.grain(GrainId(id), parts);
                 let name = format!("grain_{id}.{}", format.extension());
                 let mut out = io::BufWriter::new(std::fs::File::create(folder.join(name))?);

@@ -98,46 +98,36 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
 /// As of [`smooth`].
 pub fn smooth_watched(
     config: &Config,
-    mut cells: Tessellated,
+    cells: Tessellated,
     progress: Progress,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Polycrystal, Error> {
-    let mut resolved = cells.tessellation.resolved();
     let mut clock = Clock { progress, times: cells.times.clone() };
     let mut attempts = Vec::new();
-    let mut roundings = 0..MOST_ROUNDINGS;
-    let (regularization, smoothed) = loop {
-        let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
-        check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
-        let (regularization, error) =
-            match smooth_cells(config, &cells, tessellation, &mut attempts, &mut clock, &mut watch) {
-                Ok(smoothed) => break smoothed,
-                Err(error) => error,
-            };
-        if error.is_tangle()
-            && roundings.next().is_some()
-            && let Some(rounder) =
-                clock.time(Stage::Cells, || cells.with_rounder(&error.grains().unwrap_or_default()))?
-        {
-            error.give_up(regularization.in_words(), &mut attempts);
-            resolved = rounder.tessellation.resolved();
-            cells = rounder;
-            continue;
-        }
-        let mut failure = Failure::new(error, attempts, &cells);
-        if config.regularize == Some(0.0) && failure.cause.is_tangle() {
-            let shorter = Config { regularize: None, ..config.clone() };
-            let (attempts, watch) = (&mut Vec::new(), &mut |_: RelaxationStep<'_>| ());
-            let smoothed = smooth_cells(&shorter, &cells, tessellation, attempts, &mut clock, watch);
-            failure.works_without_short_lines = smoothed.is_ok();
-        }
-        if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
-            return Err(failure.into());
-        }
-        let works = time_that_works(config, &cells, tessellation, &failure.cause);
-        return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
-    };
+    let as_they_were = (config.volumes == Volumes::Free).then(|| cells.clone());
+    let Rounded { cells, resolved, regularization, result } =
+        smooth_rounded(config, cells, &mut attempts, &mut clock, &mut watch)?;
     let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+    let smoothed = match result {
+        Ok(smoothed) => smoothed,
+        Err(error) => {
+            let mut failure = Failure::new(error, attempts, &cells);
+            if config.regularize == Some(0.0) && failure.cause.is_tangle() {
+                let shorter = Config { regularize: None, ..config.clone() };
+                let (attempts, watch) = (&mut Vec::new(), &mut |_: RelaxationStep<'_>| ());
+                let (_, smoothed) = smooth_cells(&shorter, &cells, tessellation, attempts, &mut clock, watch);
+                failure.works_without_short_lines = smoothed.is_ok();
+            }
+            return Err(match as_they_were {
+                Some(cells) if failure.cause.is_of_time() => {
+                    let works = time_that_works(config, &cells, &failure.cause);
+                    failure.with_growth(works.map_or(Growth::Never, Growth::Until))
+                }
+                _ => failure,
+            }
+            .into());
+        }
+    };
     attempts.extend(smoothed.relaxed.given_up.clone());
     let (network, points, validation) = (smoothed.network, smoothed.points, smoothed.validation);
     let topology = Topology::new(Some(&cells.face_counts(tessellation)), &network);
@@ -165,7 +155,48 @@ pub fn smooth_watched(
     Ok(polycrystal)
 }
 
-/// The network of some cells, by the first way that leads to one. An error comes with the last way.
+/// The network of some cells, or of rounder ones.
+struct Rounded {
+    cells: Tessellated,
+    /// The cells with faces that are resolved, if some were not.
+    resolved: Option<Tessellation>,
+    /// The last way.
+    regularization: Regularization,
+    result: Result<Smoothed, NetworkError>,
+}
+
+/// The network of some cells. Where that of grains with given shapes tangles, they get rounder ones.
+fn smooth_rounded(
+    config: &Config,
+    mut cells: Tessellated,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Rounded, Error> {
+    let mut resolved = cells.tessellation.resolved();
+    let mut roundings = 0..MOST_ROUNDINGS;
+    loop {
+        let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+        check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
+        let (regularization, result) = smooth_cells(config, &cells, tessellation, attempts, clock, watch);
+        let rounder = match &result {
+            Err(error) if error.is_tangle() && roundings.next().is_some() => {
+                clock.time(Stage::Cells, || cells.with_rounder(&error.grains().unwrap_or_default()))?
+            }
+            _ => None,
+        };
+        match (result, rounder) {
+            (Err(error), Some(rounder)) => {
+                error.give_up(regularization.in_words(), attempts);
+                resolved = rounder.tessellation.resolved();
+                cells = rounder;
+            }
+            (result, _) => return Ok(Rounded { cells, resolved, regularization, result }),
+        }
+    }
+}
+
+/// The network of some cells, by the first way that leads to one, with the last way.
 fn smooth_cells(
     config: &Config,
     cells: &Tessellated,
@@ -173,7 +204,7 @@ fn smooth_cells(
     attempts: &mut Vec<Attempt>,
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<(Regularization, Smoothed), (Regularization, NetworkError)> {
+) -> (Regularization, Result<Smoothed, NetworkError>) {
     let mut tries = Regularization::tries(config).iter();
     loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");
@@ -181,19 +212,13 @@ fn smooth_cells(
             Err(error) if error.is_tangle() && tries.len() > 0 => {
                 error.give_up(regularization.in_words(), attempts);
             }
-            Err(error) => return Err((regularization, error)),
-            Ok(smoothed) => return Ok((regularization, smoothed)),
+            result => return (regularization, result),
         }
     }
 }
 
 /// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
-fn time_that_works(
-    config: &Config,
-    cells: &Tessellated,
-    tessellation: &Tessellation,
-    cause: &NetworkError,
-) -> Option<f64> {
+fn time_that_works(config: &Config, cells: &Tessellated, cause: &NetworkError) -> Option<f64> {
     let Relaxation::Time(asked) = config.effective_relaxation() else { return None };
     let mut time = match cause {
         NetworkError::GrainVanished { time, .. } | NetworkError::GrowthNotFollowed { time, .. }
@@ -207,20 +232,9 @@ fn time_that_works(
     for _ in 0..SHORTER_TIMES {
         time = two_digits_down(time);
         let shorter = Config { relaxation: Some(Relaxation::Time(time)), ..config.clone() };
-        let works = |regularization: &Regularization| {
-            let attempts = &mut Vec::new();
-            smooth_regularized(
-                &shorter,
-                cells,
-                tessellation,
-                *regularization,
-                attempts,
-                &mut clock,
-                &mut |_| (),
-            )
-            .is_ok()
-        };
-        if Regularization::tries(config).iter().any(works) {
+        let (cells, attempts) = (cells.clone(), &mut Vec::new());
+        let smoothed = smooth_rounded(&shorter, cells, attempts, &mut clock, &mut |_| ());
+        if smoothed.is_ok_and(|rounded| rounded.result.is_ok()) {
             return Some(time);
         }
         time *= SHORTER;

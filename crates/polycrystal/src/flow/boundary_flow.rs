@@ -206,6 +206,10 @@ impl<'a> Flow<'a> {
             self.groups.unite(&mut moves, |point| self.freedom(point), attempt);
             points = displaced(start, &moves);
         }
+        if end == End::Open && folded == OnFold::Round {
+            // What nothing rounds here, finer points may.
+            return Ok(points);
+        }
         Err(NetworkError::Folded { count, grains })
     }
 
