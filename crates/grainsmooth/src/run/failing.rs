@@ -32,22 +32,28 @@ impl Failure {
 }
 
 impl FailedGrain {
-    /// The smallest of the grains that a failure names, of all if it names none; nothing if it is not about grains.
+    /// The smallest of the grains that a failure names, of all if it names none or if that is tiny; nothing if it is not about grains.
     pub(crate) fn of(cause: &NetworkError, cells: &Tessellated) -> Option<Self> {
         let named = cause.grains()?;
         let dimension = cells.tessellation.domain().dimension();
         let volumes = cells.volumes();
         let diameters: Vec<f64> = volumes.iter().map(|volume| dimension.ball_diameter(*volume)).collect();
-        let is_named = |grain: &u32| named.is_empty() || named.iter().any(|other| other.0 == *grain);
-        let sized = (0u32..).zip(&diameters).filter(|(grain, _)| is_named(grain));
-        let (grain, diameter) = sized.min_by(|a, b| a.1.total_cmp(b.1))?;
-        Some(Self {
+        let mean = EquivalentDiameters::new(dimension, &diameters).mean;
+        let sized = || (0u32..).zip(&diameters);
+        let smallest = sized().min_by(|a, b| a.1.total_cmp(b.1))?;
+        let of_named = sized().filter(|(grain, _)| named.iter().any(|other| other.0 == *grain));
+        let of_named = of_named.min_by(|a, b| a.1.total_cmp(b.1));
+        let told = |(grain, diameter): (u32, &f64), is_smallest: bool| Self {
             grain,
             seed: cells.grains.ids[grain as usize],
             diameter: *diameter,
-            share: diameter / EquivalentDiameters::new(dimension, &diameters).mean,
-            is_smallest: named.is_empty(),
-        })
+            share: diameter / mean,
+            is_smallest,
+        };
+        // What a tiny grain spoils may show at another.
+        let smallest = told(smallest, of_named != Some(smallest));
+        let named = of_named.filter(|_| !smallest.is_tiny()).map(|grain| told(grain, false));
+        Some(named.unwrap_or(smallest))
     }
 }
 
@@ -103,5 +109,23 @@ mod tests {
         let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
         assert_eq!(merged.merged_seeds, [3]);
         assert_eq!(merged.grains.ids, [0, 1, 2, 4, 5, 6]);
+    }
+
+    /// A grain of 5e-6 that spoiled others was not told of: failure 20261150:191 of the campaign.
+    #[test]
+    fn a_tiny_grain_is_named_wherever_it_shows() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("seeds.txt");
+        std::fs::write(&path, SLABS.replace("0.5005 ", "0.50000000001 ").replace("0.501 ", "0.50000000002 "))
+            .unwrap();
+        let config = Config { seeds: SeedSource::File(path), ..Config::default() };
+        let cells = tessellate(&config, &|_, _, _| ()).unwrap();
+        let missed = NetworkError::VolumeNotRestored { grain: GrainId(0), relative_error: 1e-3 };
+        let said = Failure::new(missed, Vec::new(), &cells).to_string();
+        assert!(said.contains("; the smallest is grain 3 (SeedId 3), "), "{said}");
+        assert!(
+            said.ends_with(", too small beside the others; merge such cells with --min-diameter 0.01"),
+            "{said}"
+        );
     }
 }
