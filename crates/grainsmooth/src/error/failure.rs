@@ -60,10 +60,7 @@ impl fmt::Display for Failure {
                 line_name(first)
             );
         }
-        if let Some(Growth::Until(time)) = self.growth {
-            return write!(out, "; --relax {time} works");
-        }
-        if self.has_shapes {
+        if self.has_shapes && !matches!(self.growth, Some(Growth::Until(_))) {
             return write!(out, "; give --grain-shapes a lower ratio, or other seeds");
         }
         if self.works_without_short_lines {
@@ -73,7 +70,8 @@ impl fmt::Display for Failure {
             write!(out, ", too small beside the others")?;
         }
         match (self.growth, self.grain.and_then(|grain| grain.least_diameter())) {
-            (Some(_), _) => write!(
+            (Some(Growth::Until(time)), _) => write!(out, "; --relax {time} works"),
+            (Some(Growth::Never), _) => write!(
                 out,
                 "; no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5"
             ),
