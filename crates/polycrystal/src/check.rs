@@ -8,6 +8,7 @@ pub(crate) mod contact;
 pub(crate) mod fault;
 pub(crate) mod folds;
 pub(crate) mod intersections;
+pub(crate) mod nesting;
 pub(crate) mod orientation;
 pub(crate) mod pinched_points;
 pub(crate) mod projection;

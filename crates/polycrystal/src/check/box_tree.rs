@@ -28,6 +28,11 @@ impl Bounds {
         })
     }
 
+    /// Around the ray along x from a point.
+    pub(crate) fn of_ray(from: DVec3) -> Self {
+        Self { lower: from, upper: from.with_x(f64::INFINITY) }
+    }
+
     #[inline]
     pub(crate) fn with(self, other: Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }

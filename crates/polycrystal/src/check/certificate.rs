@@ -9,6 +9,7 @@ use crate::check::boundary_survey::BoundarySurvey;
 use crate::check::closedness::closedness_faults;
 use crate::check::fault::Fault;
 use crate::check::intersections::crossing_elements;
+use crate::check::nesting::Pieces;
 use crate::check::pinched_points::pinched_points;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::angles::angles;
@@ -89,7 +90,8 @@ impl fmt::Display for Faults {
 }
 
 /// Looks for all that can be wrong with a network: points and elements that should not be there, grains that are not closed
-/// or wind the wrong way, folds, elements that cross (decided exactly), and expected that do not hold.
+/// or wind the wrong way, folds, elements that cross and grains inside others that lie outside them (both decided exactly), and expected that do
+/// not hold.
 ///
 /// Where a point is not finite the search ends with these points, and where the grains are not closed volumes are not
 /// compared with expected.
@@ -144,12 +146,12 @@ pub(crate) fn inspect(
     faults.extend(survey.flat.iter().map(|element| Fault::NoArea { element: *element }));
     // Each of these runs for the most part on one thread.
     let of_angles = || AngleStatistics::of(angles(surface, surface.sides, adjacency.non_manifold_edges()));
-    let ((crossing, angles), ((meetings, duplicates), (closing, is_closed))) = rayon::join(
+    let ((crossing, angles), ((meetings, duplicates), ((closing, is_closed), pieces))) = rayon::join(
         || rayon::join(|| crossing_elements(surface, adjacency, &boundaries, &survey.boxes), of_angles),
         || {
             rayon::join(
                 || (meetings(surface), duplicate_points(surface.points)),
-                || closedness_and_pinches(surface, adjacency),
+                || (closedness_and_pinches(surface, adjacency), Pieces::new(surface)),
             )
         },
     );
@@ -160,8 +162,13 @@ pub(crate) fn inspect(
     faults.extend(closing);
     let folded = survey.folded.into_iter();
     faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
+    // What is open or crosses is nowhere as a whole.
+    let is_somewhere = is_closed && crossing.is_empty();
     let crossing = crossing.into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements, grains: surface.grains_at(elements) }));
+    if is_somewhere {
+        faults.extend(pieces.misplaced(surface, &boundaries, &survey.boxes));
+    }
     if let Some(stated) = expected.node_types {
         faults.extend(wrong_node_types(stated, &meetings));
     }

@@ -127,6 +127,34 @@ fn flat_segments_meet(first: [DVec2; 2], second: [DVec2; 2]) -> bool {
     !(apart(0) || apart(1))
 }
 
+/// Whether a ray along x passes a triangle, 1 in the direction of its normal, -1 against it; 0 if it does not.
+///
+/// The triangle does not contain the start. A ray passes through no edge: it lies off it by an infinitesimal along y, and a smaller one along z
+/// (simulation of simplicity, Edelsbrunner and Mücke 1990). So it passes as many triangles of a closed surface as it should.
+pub(crate) fn ray_through_triangle(start: DVec3, corners: [DVec3; 3]) -> i32 {
+    if corners.iter().all(|corner| corner.x < start.x) {
+        return 0;
+    }
+    let flat = |point: DVec3| DVec2::new(point.y, point.z);
+    let [a, b, c] = corners.map(flat);
+    let side = |from: DVec2, to: DVec2| match area_sign(from, to, flat(start)) {
+        0 if from.y == to.y => sign(to.x - from.x),
+        0 => sign(from.y - to.y),
+        turn => turn,
+    };
+    let turn = side(a, b);
+    let is_passed = turn != 0 && turn == side(b, c) && turn == side(c, a);
+    if is_passed && volume_sign(corners, start) == turn { turn } else { 0 }
+}
+
+/// The same of a segment in the plane, whose normal points to its right.
+pub(crate) fn ray_through_segment(start: DVec3, [a, b]: [DVec3; 2]) -> i32 {
+    let is_above = |end: DVec3| end.y > start.y;
+    let up = i32::from(is_above(b)) - i32::from(is_above(a));
+    // Of a segment that goes up the start is on the left, if the ray passes it.
+    if up != 0 && area_sign(a.truncate(), b.truncate(), start.truncate()) == up { up } else { 0 }
+}
+
 /// A projection along the axis that is steepest to the triangle: exact, as it only leaves out a coordinate.
 fn flattening([a, b, c]: [DVec3; 3]) -> impl Fn(DVec3) -> DVec2 {
     let axis = (b - a).cross(c - a).abs().max_position();
@@ -203,6 +231,34 @@ mod tests {
         assert!(cross(base, [0, 6, 8]), "in one plane, one from a corner into the other");
         assert!(!cross(base, [2, 1, 0]), "the same corners");
         assert!(!cross(base, [0, 1, 1]), "no area");
+    }
+
+    #[test]
+    fn rays_pass_closed_surfaces_once() {
+        // Through the middle, an edge and a corner of an octahedron.
+        let corner = |axis: usize, up: bool| DVec3::AXES[axis] * if up { 1.0 } else { -1.0 };
+        let passed = |start: DVec3| -> i32 {
+            let of_octant = |octant: usize| {
+                let up = [0, 1, 2].map(|axis| octant >> axis & 1 == 1);
+                let [a, b, c] = [0, 1, 2].map(|axis| corner(axis, up[axis]));
+                let is_odd = up.iter().filter(|up| **up).count() % 2 == 0;
+                ray_through_triangle(start, if is_odd { [a, c, b] } else { [a, b, c] })
+            };
+            (0..8).map(of_octant).sum()
+        };
+        for [y, z] in [[0.2, 0.3], [0.0, 0.3], [0.3, 0.0], [0.0, 0.0], [-0.5, 0.0]] {
+            let passed = [-2.0, 0.1, 2.0].map(|x| passed(DVec3::new(x, y, z)));
+            assert_eq!(passed, [0, 1, 0], "{y} {z}");
+        }
+        // A square, through an edge and a corner.
+        let corners = [DVec3::NEG_Y, DVec3::X, DVec3::Y, DVec3::NEG_X];
+        for y in [0.3, 0.0, -0.3] {
+            let passed = [-2.0, 0.1, 2.0].map(|x| -> i32 {
+                let start = DVec3::new(x, y, 0.0);
+                (0..4).map(|side| ray_through_segment(start, [corners[side], corners[(side + 1) % 4]])).sum()
+            });
+            assert_eq!(passed, [0, 1, 0], "{y}");
+        }
     }
 
     #[test]

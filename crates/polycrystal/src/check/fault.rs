@@ -110,6 +110,14 @@ pub enum Fault {
         /// The grains beside them.
         grains: Vec<GrainId>,
     },
+    /// A closed piece of the surface lies elsewhere than in the side that is around it by its own elements.
+    #[error("the closed piece of surface at point {point} should lie in {around}, but does not")]
+    Misplaced {
+        /// A point of it.
+        point: u32,
+        /// The side that should be around it.
+        around: Side,
+    },
     /// A point's type is not that of the sides around it.
     #[error("point {point} has the node type {}, but the sides around it make {}", stated.code(), derived.code())]
     WrongNodeType {
@@ -203,6 +211,7 @@ impl Fault {
             Self::Pinched { .. } | Self::PinchedPoint { .. } => "pinched",
             Self::Folded { .. } => "folded",
             Self::Crossing { .. } => "crossing",
+            Self::Misplaced { .. } => "misplaced",
             Self::WrongNodeType { .. } => "wrong node type",
             Self::WrongGrainCount { .. } => "wrong number of grains",
             Self::NoVolume { .. } => "no volume",
@@ -219,6 +228,7 @@ impl Fault {
             Self::NotFinite { point }
             | Self::Orphan { point }
             | Self::PinchedPoint { point, .. }
+            | Self::Misplaced { point, .. }
             | Self::WrongNodeType { point, .. }
             | Self::WrongGrainCount { point, .. } => (vec![*point], Vec::new()),
             Self::DuplicatePoints { points } => (points.to_vec(), Vec::new()),
@@ -246,6 +256,7 @@ impl Fault {
             | Self::MissingGrain { grain }
             | Self::UnknownGrain { grain }
             | Self::WrongVolume { grain, .. } => vec![*grain],
+            Self::Misplaced { around, .. } => around.grain().into_iter().collect(),
             Self::WrongSides { stated, .. } => stated.iter().filter_map(|side| side.grain()).collect(),
             _ => Vec::new(),
         }

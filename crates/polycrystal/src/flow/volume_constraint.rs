@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::rows::{CsrRows, NewRow};
@@ -113,32 +114,55 @@ impl VolumeGradients<'_, '_> {
 pub(crate) struct Compliance {
     grids: Multigrid,
     diagonal: Vec<f64>,
-    /// The sum of the diagonal.
-    total: f64,
-    /// Whether the same pressure everywhere moves nothing, as walls hold the whole outer surface: there is none at pores.
-    is_held: bool,
+    /// Of each grain, the number of its part.
+    parts: Vec<u32>,
+    /// Of each part, the sum of its diagonal; none where the same pressure in all of it moves something: pores do, walls hold the whole outer
+    /// surface.
+    held: Vec<Option<f64>>,
 }
 
 impl Compliance {
     /// That of a symmetric, positive semidefinite matrix.
     fn new(matrix: CsrRows<f64>) -> Self {
         let diagonal = matrix.diagonal();
-        // Where nothing can move there is nothing to share out.
-        let total = diagonal.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let row_sum = |grain: usize| matrix.row(grain).iter().map(|(_, value)| value).sum::<f64>().abs();
-        let is_held = (0..matrix.len()).map(row_sum).sum::<f64>() <= HELD * total;
-        Self { grids: Multigrid::new(matrix), diagonal, total, is_held }
+        let mut parts = DisjointSets::new(matrix.len());
+        for (grain, row) in (0u32..).zip((0..matrix.len()).map(|grain| matrix.row(grain))) {
+            row.iter().for_each(|(other, _)| parts.join(grain, *other));
+        }
+        let (parts, count) = parts.numbers();
+        // Of each part, the sums of the diagonal and of what one pressure leaves.
+        let mut sums = vec![[0.0; 2]; count as usize];
+        for (grain, (part, own)) in parts.iter().zip(&diagonal).enumerate() {
+            let left: f64 = matrix.row(grain).iter().map(|(_, value)| value).sum();
+            let [total, all] = &mut sums[*part as usize];
+            *total += own;
+            *all += left.abs();
+        }
+        let held = sums.into_iter().map(|[total, all]| (all <= HELD * total).then_some(total)).collect();
+        Self { grids: Multigrid::new(matrix), diagonal, parts, held }
     }
 
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
-        // A total other than zero, which rounding leaves, has no answer where walls hold and would grow without bound. Grains take it as they
-        // give way: one far smaller than the others may be smaller than their rounding.
-        let share = if self.is_held { changes.iter().sum::<f64>() / self.total } else { 0.0 };
-        let balanced: Vec<f64> =
-            changes.iter().zip(&self.diagonal).map(|(change, own)| change - share * own).collect();
+        let balanced = self.balanced(changes);
         let limits = Limits { tolerance, steps: ITERATIONS.min(2 * changes.len() + 20) };
         let precondition = |residual: &[f64]| self.grids.precondition(residual);
         solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
+    }
+
+    /// The changes of volume that pressures can bring about, nearest to the given ones.
+    ///
+    /// A part that is held keeps its whole volume, and so does a grain that moves as a whole: pressures that were to change it would grow without
+    /// bound. What rounding leaves of a part's total, grains take as they give way: one far smaller than the others may be smaller than their
+    /// rounding.
+    fn balanced(&self, changes: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.held.len()];
+        self.parts.iter().zip(changes).for_each(|(part, change)| sums[*part as usize] += change);
+        let balanced = |((change, own), part): ((&f64, &f64), &u32)| match self.held[*part as usize] {
+            _ if *own == 0.0 => 0.0,
+            Some(total) => change - sums[*part as usize] / total * own,
+            None => *change,
+        };
+        changes.iter().zip(&self.diagonal).zip(&self.parts).map(balanced).collect()
     }
 }

@@ -221,21 +221,30 @@ fn a_triangle_twice_is_found() {
     assert_eq!(faults.iter().filter(|fault| **fault == Fault::DuplicateElements { elements }).count(), 1);
 }
 
+/// Octahedra with these middles and radii, and the sides of the surface of each.
+fn octahedra(parts: &[(DVec3, f64, [Side; 2])]) -> Parts {
+    let ends = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+    let faces = (0..4u32).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]);
+    let numbered = || (0u32..).take(parts.len());
+    Parts {
+        points: parts
+            .iter()
+            .flat_map(|(middle, radius, _)| ends.map(|end| *middle + end * *radius))
+            .collect(),
+        triangles: numbered()
+            .flat_map(|part| faces.clone().map(move |face| face.map(|corner| corner + 6 * part)))
+            .collect(),
+        boundary_of: numbered().flat_map(|part| [BoundaryId(part); 8]).collect(),
+        sides: parts.iter().map(|(.., sides)| *sides).collect(),
+        node_types: Vec::new(),
+    }
+}
+
 /// Two closed balls of one grain each that overlap: nothing but crossings is wrong.
 #[test]
 fn crossing_is_found_where_each_grain_is_good() {
-    let octahedron = |origin: DVec3| {
-        let ends = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
-        ends.map(|end| origin + end)
-    };
-    let faces = (0..4u32).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]);
-    let mut parts = Parts {
-        points: [octahedron(DVec3::ZERO), octahedron(DVec3::new(0.9, 0.1, 0.2))].concat(),
-        triangles: faces.clone().chain(faces.map(|face| face.map(|corner| corner + 6))).collect(),
-        boundary_of: [[BoundaryId(0); 8], [BoundaryId(1); 8]].concat(),
-        sides: [0, 1].map(|grain| [Side::Grain(GrainId(grain)), Side::Exterior]).to_vec(),
-        node_types: Vec::new(),
-    };
+    let sides = [0, 1].map(|grain| [Side::Grain(GrainId(grain)), Side::Exterior]);
+    let mut parts = octahedra(&[(DVec3::ZERO, 1.0, sides[0]), (DVec3::new(0.9, 0.1, 0.2), 1.0, sides[1])]);
     let certificate = certify(&parts.surface(), &Expected::default());
     assert!(certificate.faults.0.len() > 4, "{}", certificate.faults);
     assert!(certificate.faults.0.iter().all(|fault| matches!(fault, Fault::Crossing { .. })));
@@ -246,6 +255,34 @@ fn crossing_is_found_where_each_grain_is_good() {
         *point += DVec3::X * 1.2;
     }
     assert!(certify(&parts.surface(), &Expected::default()).is_good());
+}
+
+/// A grain within a grain within a grain, and one apart: wherever they are, no volume tells.
+#[test]
+fn a_grain_outside_the_one_around_it_is_found() {
+    let grain = |grain: u32| Side::Grain(GrainId(grain));
+    let outer = (DVec3::ZERO, 1.0, [grain(0), Side::Exterior]);
+    let apart = (DVec3::X * 3.0, 1.0, [grain(3), Side::Exterior]);
+    let faults = |parts: &[(DVec3, f64, [Side; 2])]| {
+        certify(&octahedra(parts).surface(), &Expected::default()).faults.0
+    };
+    let nested = |middles: [DVec3; 2]| {
+        let inner = [(middles[0], 0.2, [grain(1), grain(0)]), (middles[1], 0.1, [grain(2), grain(1)])];
+        faults(&[outer, inner[0], inner[1], apart])
+    };
+    let misplaced = |piece: u32, around: Side| Fault::Misplaced { point: 6 * piece, around };
+    let here = DVec3::new(0.1, -0.2, 0.1);
+    assert_eq!(nested([DVec3::ZERO; 2]), []);
+    assert_eq!(nested([here; 2]), []);
+    // Outside of all, on either side, within the wrong grain, and together.
+    for elsewhere in [DVec3::Y * 2.0, DVec3::NEG_X * 2.0, DVec3::X * 3.0] {
+        assert_eq!(nested([elsewhere; 2]), [misplaced(1, grain(0))], "{elsewhere}");
+        assert_eq!(nested([here, elsewhere]), [misplaced(2, grain(1))], "{elsewhere}");
+    }
+    assert_eq!(nested([here, here + DVec3::Z * 0.4]), [misplaced(2, grain(1))]);
+    // A grain apart that stands within one that has no room for it.
+    let swallowed = faults(&[outer, (here, 0.2, [grain(1), Side::Exterior])]);
+    assert_eq!(swallowed, [misplaced(1, Side::Exterior)]);
 }
 
 /// Four triangles of two grains at one edge, as voxels that touch along an edge have.
