@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::Freedom;
 use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
+use crate::{Freedom, GrainId};
 
 /// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
 pub(crate) const CHUNK: usize = 4096;
@@ -47,6 +47,11 @@ impl PressureResponse {
             (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();
         self.hold(&mut moves);
         moves
+    }
+
+    /// Whether there are pressures that change the volume of a grain.
+    pub(crate) fn can_change(&self, grain: GrainId) -> bool {
+        self.constraint.as_ref().is_some_and(|(_, compliance)| compliance.gives_way(grain))
     }
 
     /// Takes out what walls hold.

@@ -142,6 +142,11 @@ impl Compliance {
         Self { grids: Multigrid::new(matrix), diagonal, parts, held }
     }
 
+    /// Whether a grain gives way to any pressure: one that moves as a whole keeps its volume.
+    pub(crate) fn gives_way(&self, grain: GrainId) -> bool {
+        self.diagonal[grain.index()] > 0.0
+    }
+
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         let balanced = self.balanced(changes);

@@ -85,8 +85,9 @@ impl Flow<'_> {
             {
                 return Ok(surface);
             }
-            // A correction that makes things worse (NaN included) would only be followed by others.
-            if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
+            // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
+            let is_hopeless = relative_error.is_nan() || relative_error >= 1.0 || !response.can_change(grain);
+            if step == VOLUME_STEPS || is_hopeless {
                 return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
