@@ -128,7 +128,7 @@ pub use names::Names;
 pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, SceneColors, SceneNumbers, ScenePicture, Shading, Slice};
 pub use report::{Html, SceneReport};
-pub use run::elements_reached::{ElementsReached, LineMerged};
+pub use run::elements_reached::{ElementsReached, LineMerged, TrianglesNarrow};
 pub use run::fitted_cells::CellFit;
 pub use run::listed::{ListedCells, list_cells};
 pub use run::measured::{MapRun, smooth_map};

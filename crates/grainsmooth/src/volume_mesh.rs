@@ -54,25 +54,6 @@ pub(crate) fn volume([a, b, c, d]: [DVec3; 4]) -> f64 {
     (b - a).cross(c - a).dot(d - a) / 6.0
 }
 
-/// Three times the radius of the ball within a tetrahedron, divided by that of the ball around it: 1 of a regular one, 0 of a flat one, negative where it is turned inside out.
-pub(crate) fn gamma([a, b, c, d]: [DVec3; 4]) -> f64 {
-    let (u, v, w) = (b - a, c - a, d - a);
-    let six_volumes = u.cross(v).dot(w);
-    let areas =
-        u.cross(v).length() + v.cross(w).length() + w.cross(u).length() + (v - u).cross(w - u).length();
-    // The edge lengths' products of opposite edges, as sides of a triangle whose area is 6 V R.
-    let products =
-        [u.length() * (w - v).length(), v.length() * (w - u).length(), w.length() * (v - u).length()];
-    let [p, q, r] = products;
-    let sixteen_squares = (p + q + r) * (-p + q + r) * (p - q + r) * (p + q - r);
-    let around = sixteen_squares.max(0.0).sqrt();
-    if areas * around == 0.0 {
-        return 0.0;
-    }
-    // r_in = six_volumes / areas, for areas are twice the faces'; R = around / (4 six_volumes).
-    12.0 * six_volumes * six_volumes.abs() / (areas * around)
-}
-
 /// What became of the edges on boundaries of elements of second order.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CurvedEdges {
@@ -93,25 +74,5 @@ impl fmt::Display for CurvedEdges {
             out,
             "{curved} edges on the smooth surface, {straight} straight; Jacobian at least {least_jacobian:.2} of the straight element's; volumes to {largest_volume_error:.1e}"
         )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_regular_tetrahedron_has_gamma_one_and_a_flat_one_none() {
-        let regular =
-            [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(DVec3::from);
-        let sign = volume(regular).signum();
-        assert!((gamma(regular) * sign - 1.0).abs() < 1e-12);
-        let [a, b, c, d] = regular;
-        assert!((gamma([b, a, c, d]) * sign + 1.0).abs() < 1e-12);
-        // The corner of a cube: r = 1 / (3 + sqrt 3), R = sqrt(3) / 2.
-        let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-        let expected = 6.0 / (3f64.sqrt() * (3.0 + 3f64.sqrt()));
-        assert!((gamma(corner) - expected).abs() < 1e-12 && (volume(corner) - 1.0 / 6.0).abs() < 1e-15);
-        assert_eq!(gamma([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE.with_z(0.0)]), 0.0);
     }
 }

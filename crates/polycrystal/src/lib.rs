@@ -72,6 +72,7 @@ pub use mesh::level::{Level, LevelView};
 pub use mesh::node_type::NodeType;
 pub use mesh::periodic::PeriodicCopies;
 pub use mesh::surface::Surface;
+pub use mesh::tetrahedron::tetrahedron_gamma;
 pub use mesh::triangle_quality::TriangleQuality;
 pub use mesh::wall_set::{Freedom, WallSet, WallSets};
 pub use network::Network;
@@ -92,6 +93,7 @@ pub use relax::relax_tuned;
 pub use relax::{relax, relax_certified, relax_watched};
 #[doc(hidden)]
 pub use remesh::RemeshTuning;
+pub use remesh::narrow_triangles::NarrowTriangles;
 pub use remesh::{CurvedBoundaries, ElementSize, MergedLine, PlaneMesh, Remeshed};
 pub use validate::validate;
 pub use voxels::{SmoothedVoxels, VoxelLabel, VoxelOptions, Voxels, smooth_voxels};

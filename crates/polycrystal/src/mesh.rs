@@ -16,6 +16,7 @@ pub(crate) mod periodic;
 pub(crate) mod quadratic_triangle;
 pub(crate) mod rounding;
 pub(crate) mod surface;
+pub(crate) mod tetrahedron;
 pub(crate) mod triangle_quality;
 pub(crate) mod volume;
 pub(crate) mod wall_set;

@@ -6,9 +6,12 @@
 
 mod assembled;
 mod curved;
+mod divide_lines;
 mod gradation;
 mod joints;
 mod lines;
+mod narrow_corners;
+pub(crate) mod narrow_triangles;
 mod outline;
 mod parts;
 mod patch;
@@ -22,6 +25,7 @@ mod skeleton;
 mod torus;
 mod tuning;
 mod volumes;
+mod wedges;
 
 use std::borrow::Cow;
 
@@ -33,8 +37,9 @@ use crate::mesh::id::id;
 use crate::{BoundaryId, Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
 use assembled::{Assembled, NewBoundary, assemble};
 pub use curved::CurvedBoundaries;
+use divide_lines::divide_lines;
 use joints::separate_joints;
-use lines::{DividedLine, divide_lines};
+use lines::DividedLine;
 use outline::{Numbering, Outlined, is_loop};
 use parts::Parts;
 pub use plane::PlaneMesh;
@@ -44,6 +49,7 @@ use size_field::{Halved, SizeField, Surroundings};
 use skeleton::Skeleton;
 use torus::{Moved, Torus};
 pub use tuning::RemeshTuning;
+use wedges::face_across_wedges;
 
 /// How large elements are to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,7 +191,7 @@ impl Network {
             }
             around.check_lines(size, tuning)?;
             let sizes = SizeField::new(&around, size, halved, tuning);
-            let lines = divide_lines(&around, &sizes);
+            let lines = divide_lines(&around, &sizes, tuning);
             let numbering = Numbering::new(&around, &lines);
             let mut assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
             let curved =
@@ -315,6 +321,7 @@ fn shaped_parts(
         })
         .collect();
     separate_joints(&mut shaped, around, lines, numbering);
+    face_across_wedges(&mut shaped, domain, tuning);
     shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect()
 }
 

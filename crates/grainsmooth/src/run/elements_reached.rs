@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use polycrystal::MergedLine;
+use polycrystal::{MergedLine, NarrowTriangles};
 use serde::Serialize;
 
 use crate::Names;
@@ -16,8 +16,25 @@ pub struct ElementsReached {
     pub mean_edge: f64,
     /// How often elements became smaller somewhere, because boundaries crossed or folded there.
     pub refinements: usize,
+    /// Triangles with a small angle; nothing in the plane, where the mesh between lines is made later.
+    pub narrow: Option<TrianglesNarrow>,
     /// Lines shorter than the elements that became points, the shortest first.
     pub merged_lines: Vec<LineMerged>,
+}
+
+/// Triangles with an angle below [`NarrowTriangles::BOUND`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct TrianglesNarrow {
+    /// How many there are.
+    pub count: usize,
+    /// Those in corners and strips between lines that are as narrow.
+    pub between_lines: usize,
+}
+
+impl From<NarrowTriangles> for TrianglesNarrow {
+    fn from(NarrowTriangles { count, between_lines }: NarrowTriangles) -> Self {
+        Self { count, between_lines }
+    }
 }
 
 /// A line that became a point.
@@ -48,8 +65,15 @@ impl fmt::Display for LineMerged {
 
 impl fmt::Display for ElementsReached {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { size, mean_edge, refinements, .. } = self;
+        let Self { size, mean_edge, refinements, narrow, .. } = self;
         write!(out, "edges of {size:.4e} asked for, {mean_edge:.4e} on the mean")?;
+        if let Some(TrianglesNarrow { count: count @ 1.., between_lines }) = narrow {
+            let bound = NarrowTriangles::BOUND;
+            write!(
+                out,
+                "; {count} triangles below {bound} degrees, {between_lines} of them in corners and strips between lines"
+            )?;
+        }
         match refinements {
             0 => {}
             1 => write!(out, "; smaller in a place where boundaries folded or crossed")?,

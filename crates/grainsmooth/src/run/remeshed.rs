@@ -5,7 +5,7 @@ use std::time::Instant;
 use polycrystal::{ElementSize, Remeshed};
 use voronoi::Dimension;
 
-use super::elements_reached::{ElementsReached, LineMerged};
+use super::elements_reached::{ElementsReached, LineMerged, TrianglesNarrow};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use crate::volume_mesh::filled_plane::FilledPlane;
@@ -78,7 +78,9 @@ impl Polycrystal {
                 };
                 let names = self.file().names;
                 let merged_lines = merged.iter().map(|line| LineMerged::new(line, names)).collect();
-                self.elements = Some(ElementsReached { size: length, mean_edge, refinements, merged_lines });
+                let narrow = network.narrow_triangles(&points).map(TrianglesNarrow::from);
+                self.elements =
+                    Some(ElementsReached { size: length, mean_edge, refinements, narrow, merged_lines });
                 // Angles stay those of the smooth boundaries, as they were before they were stretched.
                 self.validation.triangles = certificate.triangles;
                 self.validation.largest_volume_error = certificate.largest_volume_error;

@@ -3,9 +3,10 @@
 use std::fmt;
 
 use glam::DVec3;
+use polycrystal::tetrahedron_gamma;
 use serde::Serialize;
 
-use super::{VolumeMesh, gamma, volume};
+use super::{VolumeMesh, volume};
 
 /// Number of bins of a [`ShapeHistogram`].
 const BINS: usize = 20;
@@ -128,7 +129,7 @@ fn shape(corners: [DVec3; 4], mean_volume: f64) -> TetrahedronShape {
     let widest = normals.iter().map(|normal| normal.length()).fold(0.0, f64::max);
     let least_altitude = 6.0 * volume(corners) / widest;
     TetrahedronShape {
-        gamma: gamma(corners),
+        gamma: tetrahedron_gamma(corners),
         least_angle: angles.fold(f64::INFINITY, f64::min),
         aspect_ratio: longest / least_altitude * REGULAR_ALTITUDE,
         volume: volume(corners) / mean_volume,

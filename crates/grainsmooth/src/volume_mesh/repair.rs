@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
+use polycrystal::tetrahedron_gamma;
 
-use super::{VolumeMesh, gamma, volume};
+use super::{VolumeMesh, volume};
 
 /// Gamma below which the points around a tetrahedron look for better places, and below which its edges may be halved.
 const POOR: f64 = 0.25;
@@ -78,7 +79,7 @@ impl VolumeMesh {
 
 impl Repair<'_> {
     fn gamma(&self, tetrahedron: usize) -> f64 {
-        gamma(self.mesh.corners(tetrahedron))
+        tetrahedron_gamma(self.mesh.corners(tetrahedron))
     }
 
     fn worst(&self, tetrahedra: &[usize]) -> f64 {
@@ -95,7 +96,7 @@ impl Repair<'_> {
             let star = &self.stars[point];
             let start = self.mesh.points[point];
             let gammas = |mesh: &VolumeMesh| {
-                let gammas = star.iter().map(|tetrahedron| gamma(mesh.corners(*tetrahedron)));
+                let gammas = star.iter().map(|tetrahedron| tetrahedron_gamma(mesh.corners(*tetrahedron)));
                 gammas.fold((0.0, f64::INFINITY), |(sum, least), gamma| (sum + gamma, gamma.min(least)))
             };
             let (mut sum, mut volumes) = (DVec3::ZERO, 0.0);

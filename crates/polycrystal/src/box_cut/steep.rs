@@ -4,13 +4,15 @@
 //! leaves boundaries with narrow tips. So does a boundary that meets an edge of the box at a small angle: there its trace in one plane meets another
 //! plane so. On the torus, planes may lie anywhere.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
-use subzero::EdgeId;
+use subzero::{EdgeId, TriangleMesh, VertexRule};
 
 use crate::box_cut::periodic_axes;
 use crate::box_cut::pieces::ROUNDING;
 use crate::box_cut::snap::NEAR;
-use crate::{Mesh, Network};
+use crate::{GrainId, Mesh, Network};
 
 /// Planes that are tried across each axis. On the mean of nine axes (200 random grains, seeds 1 and 2, default and equilibrium), the best of 128 meets lines at
 /// 8 degrees or more, of 1024 at 8.5; one taken by chance at 0.3.
@@ -71,6 +73,9 @@ impl Network {
                 for (_, ends) in edges.filter(|(edge, _)| mesh.is_crease(*edge)) {
                     planes.meet_segment(ends.map(place), OF_LINES);
                 }
+                for tip in self.tips(mesh, points, axis) {
+                    planes.meet_tip(place(tip));
+                }
             }
             Mesh::Segments(mesh) => {
                 for ends in mesh.segments() {
@@ -80,6 +85,27 @@ impl Network {
         }
         traces.iter().for_each(|ends| planes.meet_segment(*ends, OF_LINES));
         planes.flatness
+    }
+
+    /// The points of several boundaries where a grain ends along an axis: all of its surface around lies on one side.
+    fn tips(&self, mesh: &TriangleMesh, points: &[DVec3], axis: usize) -> BTreeSet<u32> {
+        let level = self.finest_level();
+        // Whether a point's neighbours on a grain lie below and above it.
+        let mut around: BTreeMap<(u32, GrainId), [bool; 2]> = BTreeMap::new();
+        for (corners, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {
+            for corner in corners.iter().filter(|corner| mesh.vertex_rule(**corner) == VertexRule::Corner) {
+                for grain in self.boundaries()[boundary.index()].sides.iter().filter_map(|side| side.grain())
+                {
+                    let sides = around.entry((*corner, grain)).or_default();
+                    let height = |point: u32| points[point as usize][axis];
+                    for other in corners.iter().filter(|other| height(**other) != height(*corner)) {
+                        sides[usize::from(height(*other) > height(*corner))] = true;
+                    }
+                }
+            }
+        }
+        let tips = around.into_iter().filter(|(_, sides)| *sides != [true; 2]);
+        tips.map(|((point, _), _)| point).collect()
     }
 
     /// The segments in which a plane across an axis and its periodic images meet the triangles of boundaries.
@@ -133,6 +159,20 @@ impl Planes {
         self.meet(&ends, factor * along[self.axis].abs());
     }
 
+    /// Takes note of a point where a grain ends: a plane just inside it cuts off a tip that no element fits into.
+    #[expect(clippy::cast_possible_truncation, reason = "the network is small beside 2^31 planes")]
+    fn meet_tip(&mut self, place: DVec3) {
+        let height = (place[self.axis] - self.lower) / self.spacing;
+        for plane in (height - self.near).ceil() as i32..=(height + self.near).floor() as i32 {
+            let depth = (height - f64::from(plane)).abs();
+            // What lies in a plane is not cut off by it.
+            if depth >= ROUNDING * f64::from(PLANES) {
+                let share = depth / self.near;
+                self.flatness[plane.rem_euclid(PLANES) as usize] += share.powi(-POWER) - 1.0;
+            }
+        }
+    }
+
     /// Takes note of what has these corners, and this sine to each plane that it meets or comes near.
     #[expect(clippy::cast_possible_truncation, reason = "the network is small beside 2^31 planes")]
     fn meet(&mut self, corners: &[DVec3], sine: f64) {
@@ -155,6 +195,46 @@ mod tests {
 
     use super::*;
     use crate::Junctions;
+
+    #[test]
+    fn planes_that_cut_off_tips_count_as_flat() {
+        let mut planes =
+            Planes { axis: 1, lower: 0.0, spacing: 0.1, near: 2.5, flatness: vec![0.0; (0..PLANES).len()] };
+        planes.meet_tip(DVec3::new(7.0, 10.08, -3.0));
+        let flat: Vec<usize> =
+            (0..).zip(&planes.flatness).filter(|(_, flat)| **flat > 0.0).map(|(k, _)| k).collect();
+        assert_eq!(flat, [99, 100, 101, 102, 103]);
+        let expected = (2.5_f64 / 0.8).powi(POWER) - 1.0;
+        assert!(
+            (planes.flatness[100] / expected - 1.0).abs() < 1e-9 && planes.flatness[101] > 100.0 * expected
+        );
+        // A plane through the tip leaves it whole.
+        planes.flatness.fill(0.0);
+        planes.meet_tip(DVec3::new(0.0, 10.0, 0.0));
+        assert_eq!(planes.flatness[100], 0.0);
+        assert!(planes.flatness[99] > 0.0 && planes.flatness[101] > 0.0);
+    }
+
+    /// At each corner of a cube it ends, along all axes.
+    #[test]
+    fn corners_of_cubes_are_tips() {
+        let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
+        let places = [0.3, 0.8];
+        let rows = places.into_iter().flat_map(|x| places.map(|y| [x, y]));
+        let seeds: Vec<DVec3> = rows.flat_map(|[x, y]| places.map(|z| DVec3::new(x, y, z))).collect();
+        let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("cubes");
+        let points = network.subdivide(&flat);
+        let Mesh::Triangles(mesh) = &network.finest_level().mesh else { panic!("in space") };
+        let is_corner =
+            |place: DVec3| place.to_array().iter().all(|x| ((x - 0.05) * 2.0).fract().abs() < 1e-9);
+        let corners = (0u32..).zip(&points).filter(|(_, place)| is_corner(**place)).map(|(corner, _)| corner);
+        let corners: BTreeSet<u32> = corners.collect();
+        assert!(corners.len() >= 8);
+        for axis in 0..3 {
+            assert_eq!(network.tips(mesh, &points, axis), corners);
+        }
+    }
 
     /// Each plane meets eight cubes in four lines, as long as a period; two of them are boundaries between copies, which come twice.
     #[test]

@@ -1,17 +1,11 @@
-//! Lines divided evenly, in units of the size there.
-
-use std::collections::BTreeMap;
+//! A line divided in units of the size there.
 
 use glam::DVec3;
 
 use crate::mesh::id::id;
 use crate::remesh::gradation::{Gradation, GradedEdge};
-use crate::remesh::size_field::{SizeField, Surroundings};
+use crate::remesh::size_field::SizeField;
 use crate::remesh::skeleton::Line;
-use crate::remesh::torus::Moved;
-
-/// Fewest segments of a line that comes back to where it starts.
-const OF_LOOP: usize = 3;
 
 /// Fewest steps of the smooth line to a segment: points need ones of the smooth line near them.
 const STEPS_OF_SEGMENT: usize = 2;
@@ -31,49 +25,28 @@ pub(crate) struct DividedLine {
     pub(crate) staying: Vec<u32>,
 }
 
-/// Divides all lines but those that become points.
-pub(crate) fn divide_lines(around: &Surroundings<'_>, sizes: &SizeField) -> Vec<DividedLine> {
-    let lines = &around.skeleton.lines;
-    let smooth: Vec<Smooth> = lines.iter().map(|line| Smooth::new(line, around.points, sizes)).collect();
-    let mut counts: Vec<usize> = smooth.iter().map(Smooth::count).collect();
-    // Two single segments between the same points would be one.
-    let mut between: BTreeMap<[Moved<u32>; 2], Vec<usize>> = BTreeMap::new();
-    for (number, line) in lines.iter().enumerate() {
-        if around.short.has(id(number)) {
-            counts[number] = 0;
-        } else if line.is_closed() {
-            counts[number] = counts[number].max(OF_LOOP);
-        } else {
-            between.entry(around.short.ends(line.ends(), around.torus)).or_default().push(number);
-        }
-    }
-    for alike in between.values().filter(|alike| alike.len() > 1) {
-        alike.iter().for_each(|line| counts[*line] = counts[*line].max(2));
-    }
-    let divided = |(line, count): (&Smooth, usize)| match count {
-        0 => DividedLine::default(),
-        _ => line.divide(count),
-    };
-    smooth.iter().zip(counts).map(divided).collect()
+/// Where points of so many segments stand along a line, from end to end; none where it becomes a point.
+pub(crate) fn even_shares(count: usize) -> Vec<f64> {
+    (0..=count).filter(|_| count > 0).map(|number| number as f64 / count as f64).collect()
 }
 
 /// A smooth line as it is.
-struct Smooth {
-    places: Vec<DVec3>,
+pub(crate) struct SmoothLine {
+    pub(crate) places: Vec<DVec3>,
     /// Sizes along each step.
     steps: Vec<GradedEdge>,
     /// At each point, how many segments of the size asked for the line has up to there.
     segments: Vec<f64>,
 }
 
-impl Smooth {
-    fn new(line: &Line, points: &[DVec3], sizes: &SizeField) -> Self {
+impl SmoothLine {
+    pub(crate) fn new(line: &Line, points: &[DVec3], sizes: &SizeField) -> Self {
         let places: Vec<DVec3> = line.vertices.iter().map(|vertex| points[*vertex as usize]).collect();
         let of_points: Vec<f64> = line.vertices.iter().map(|vertex| sizes.at(*vertex)).collect();
         Self::of(places, &of_points, sizes.gradation)
     }
 
-    fn of(places: Vec<DVec3>, sizes: &[f64], gradation: Gradation) -> Self {
+    pub(crate) fn of(places: Vec<DVec3>, sizes: &[f64], gradation: Gradation) -> Self {
         let ends = places.windows(2).zip(sizes.windows(2));
         let step = |(places, sizes): (&[DVec3], &[f64])| {
             gradation.edge(places[0].distance(places[1]), [sizes[0], sizes[1]])
@@ -90,22 +63,24 @@ impl Smooth {
         self.segments[self.segments.len() - 1]
     }
 
-    fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         rounded(self.total()).max(1)
     }
 
     /// The step that a share of the line ends in, and the segments of this step up to there.
-    fn at(&self, share: f64) -> (usize, f64) {
+    pub(crate) fn at(&self, share: f64) -> (usize, f64) {
         let wanted = self.total() * share;
         let step = self.segments.partition_point(|segments| *segments < wanted).max(1) - 1;
         (step, wanted - self.segments[step])
     }
 
-    fn place(&self, (step, segments): (usize, f64)) -> DVec3 {
+    pub(crate) fn place(&self, (step, segments): (usize, f64)) -> DVec3 {
         self.places[step].lerp(self.places[step + 1], self.steps[step].share(segments))
     }
 
-    fn divide(&self, count: usize) -> DividedLine {
+    /// Points at these shares of the line, of which the first and the last are its ends.
+    pub(crate) fn divide(&self, shares: &[f64]) -> DividedLine {
+        let count = shares.len() - 1;
         let per_segment = (STEPS_OF_SEGMENT * count) as f64 / self.total();
         let parts: Vec<usize> =
             self.steps.iter().map(|step| rounded_up(step.segments() * per_segment).max(1)).collect();
@@ -119,7 +94,7 @@ impl Smooth {
         let last = segments_at.len() - 1;
         let (mut points, mut staying) = (Vec::with_capacity(count - 1), vec![0]);
         for number in 1..count {
-            let (step, segments) = self.at(number as f64 / count as f64);
+            let (step, segments) = self.at(shares[number]);
             points.push(self.place((step, segments)));
             let share = segments / self.steps[step].segments();
             let nearest = first_of_step[step] + rounded(share * parts[step] as f64);
@@ -137,8 +112,8 @@ impl Smooth {
             };
             goes_to.push(id(if is_nearer_before { next - 1 } else { next }));
         }
-        let middle = |segment: usize| self.place(self.at((segment as f64 + 0.5) / count as f64));
-        let middles = (0..count).map(middle).collect();
+        let middle = |ends: &[f64]| self.place(self.at(ends[0].midpoint(ends[1])));
+        let middles = shares.windows(2).map(middle).collect();
         DividedLine { parts, points, middles, goes_to, staying }
     }
 }
@@ -157,16 +132,16 @@ fn rounded_up(number: f64) -> usize {
 mod tests {
     use super::*;
 
-    fn straight(places: &[f64], size: f64) -> Smooth {
+    fn straight(places: &[f64], size: f64) -> SmoothLine {
         let places: Vec<DVec3> = places.iter().map(|x| DVec3::X * *x).collect();
         let sizes = vec![size; places.len()];
-        Smooth::of(places, &sizes, Gradation { growth: 0.5, most: size })
+        SmoothLine::of(places, &sizes, Gradation { growth: 0.5, most: size })
     }
 
     #[test]
     fn points_stand_evenly_and_smooth_ones_go_to_the_nearest() {
         let line = straight(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0], 4.9);
-        let divided = line.divide(line.count());
+        let divided = line.divide(&even_shares(line.count()));
         assert_eq!(divided.parts, [1; 10]);
         assert_eq!(divided.points, [DVec3::X * 5.0]);
         assert_eq!(divided.staying, [0, 5, 10]);
@@ -176,7 +151,7 @@ mod tests {
     #[test]
     fn coarse_lines_are_cut_first() {
         let line = straight(&[0.0, 1.0], 0.25);
-        let divided = line.divide(line.count());
+        let divided = line.divide(&even_shares(line.count()));
         assert_eq!(divided.parts, [8]);
         assert_eq!(divided.points, [0.25, 0.5, 0.75].map(|x| DVec3::X * x));
         assert_eq!(divided.staying, [0, 2, 4, 6, 8]);
@@ -184,10 +159,10 @@ mod tests {
     #[test]
     fn a_long_step_has_small_segments_only_where_sizes_are_small() {
         let places = vec![DVec3::ZERO, DVec3::X];
-        let line = Smooth::of(places, &[0.01, 0.1], Gradation { growth: 0.5, most: 0.1 });
+        let line = SmoothLine::of(places, &[0.01, 0.1], Gradation { growth: 0.5, most: 0.1 });
         let count = line.count();
         assert_eq!(count, 13, "ln 10 / 0.5 up to 0.18, and 0.82 / 0.1 from there");
-        let divided = line.divide(count);
+        let divided = line.divide(&even_shares(count));
         let lengths: Vec<f64> = divided.points.windows(2).map(|ends| ends[0].distance(ends[1])).collect();
         assert!(lengths.windows(2).all(|pair| pair[1] > 0.99 * pair[0] && pair[1] < 1.7 * pair[0]));
         assert!((lengths[11 - 1] - 0.1).abs() < 0.01);

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use glam::{BVec3, DVec3};
 
 use crate::mesh::id::id;
-use crate::remesh::lines::divide_lines;
+use crate::remesh::divide_lines::divide_lines;
 use crate::remesh::outline::Numbering;
 use crate::remesh::parts::Parts;
 use crate::remesh::short_lines::ShortLines;
@@ -82,7 +82,7 @@ pub(super) fn remeshed(
             around.short = ShortLines::new(network, &around, sides, tuning.short_line * size.length, halved);
         }
         let sizes = SizeField::new(&around, size, halved, tuning);
-        let divided = divide_lines(&around, &sizes);
+        let divided = divide_lines(&around, &sizes, tuning);
         let numbering = Numbering::new(&around, &divided);
         let positions = positions_on_lines(&around, &divided, &numbering);
         let shaped = shaped_parts(network, &around, &sizes, (&divided, &numbering, &positions), tuning);

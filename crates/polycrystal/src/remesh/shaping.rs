@@ -12,7 +12,7 @@ use crate::remesh::reference::{Foot, Reference};
 use crate::remesh::torus::Moved;
 use crate::remesh::tuning::RemeshTuning;
 
-/// By how much the cosine of the least angle must be better for a flip: so flips end.
+/// By how much the cosine of the least angle must be better for a flip, or a measure for a motion: so both end.
 const BETTER: f64 = 1e-4;
 
 /// Sweeps over all edges within a round, each of which ends earlier where nothing happens.
@@ -170,7 +170,11 @@ impl<'a> Shaping<'a> {
     }
 
     /// Moves the first end of an edge into the other, or both inside into the middle, if `is_right` says so of the worst angle before and the triangles after.
-    fn collapse(&mut self, ends: [u32; 2], is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool) -> bool {
+    pub(crate) fn collapse(
+        &mut self,
+        ends: [u32; 2],
+        is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool,
+    ) -> bool {
         let [from, to] = ends;
         if !self.patch.pinched(ends).is_empty() {
             return false;
@@ -221,7 +225,7 @@ impl<'a> Shaping<'a> {
         triangles.iter().map(cosine).fold(1.0, f64::min)
     }
 
-    fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
+    pub(crate) fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
         triangles.iter().map(|corners| least_angle(self.patch.places(*corners))).fold(0.0, f64::min)
     }
 
@@ -280,7 +284,7 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    fn star(&self, point: u32) -> Vec<[u32; 3]> {
+    pub(crate) fn star(&self, point: u32) -> Vec<[u32; 3]> {
         self.patch.star(point).iter().map(|triangle| self.patch.corners(*triangle)).collect()
     }
 
@@ -318,7 +322,8 @@ impl<'a> Shaping<'a> {
                 }
                 let star = self.star(point);
                 if self.worst_angle(&star) < good {
-                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point, BETTER);
+                    has_moved |= self.search(point, &star, |shaping| shaping.worst_angle(&star))
+                        || self.collapse_to_widen(point, BETTER);
                 }
             }
             self.flip();
@@ -328,11 +333,12 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    fn search(&mut self, point: u32, star: &[[u32; 3]]) -> bool {
+    /// Moves a point to where the triangles around it are better by a measure; whether there is such a place nearby.
+    pub(crate) fn search(&mut self, point: u32, star: &[[u32; 3]], measure: impl Fn(&Self) -> f64) -> bool {
         let Foot { normal, size, .. } = self.feet[point as usize];
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
-        let before = self.worst_angle(star);
+        let before = measure(self);
         for step in SEARCH_STEPS {
             let place = self.patch.place(point);
             let mut best = None;
@@ -340,9 +346,9 @@ impl<'a> Shaping<'a> {
                 let by = (across * x + along * y) * (step * size);
                 let foot = self.reference.foot(place + by, self.feet[point as usize].triangle);
                 let old = (self.patch.place(point), self.feet[point as usize]);
-                let wanted = best.map_or(before, |(angle, _)| angle);
-                if self.move_if(point, foot, star, |shaping| shaping.worst_angle(star) > wanted + BETTER) {
-                    best = Some((self.worst_angle(star), foot));
+                let wanted = best.map_or(before, |(found, _)| found);
+                if self.move_if(point, foot, star, |shaping| measure(shaping) > wanted + BETTER) {
+                    best = Some((measure(self), foot));
                     self.patch.points[point as usize] = old.0;
                     self.feet[point as usize] = old.1;
                 }

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use polycrystal::tetrahedron_gamma;
 
 use super::{Found, VOLUME_TOLERANCE};
 use crate::VolumeFile;
 use crate::volume_mesh::element_shape::ElementShape;
-use crate::volume_mesh::{curved, filled_plane, gamma, volume};
+use crate::volume_mesh::{curved, filled_plane, volume};
 
 /// Gamma, in the plane the shape of a triangle, below which rounding alone may turn an element inside out.
 const FLAT: f64 = 1e-12;
@@ -15,7 +16,7 @@ const FLAT: f64 = 1e-12;
 /// The shape of an element, negative where it is turned inside out, and what it fills.
 fn shape_and_volume(corners: &[DVec3]) -> (f64, f64) {
     match *corners {
-        [a, b, c, d] => (gamma([a, b, c, d]), volume([a, b, c, d])),
+        [a, b, c, d] => (tetrahedron_gamma([a, b, c, d]), volume([a, b, c, d])),
         [a, b, c] => {
             let area = area([a, b, c]);
             let longest = [b - a, c - b, a - c].into_iter().map(DVec3::length_squared).fold(0.0, f64::max);
