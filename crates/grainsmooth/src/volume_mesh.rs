@@ -76,3 +76,13 @@ impl fmt::Display for CurvedEdges {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_corner_of_a_cube_has_a_sixth_of_its_volume() {
+        assert!((volume([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]) - 1.0 / 6.0).abs() < 1e-15);
+    }
+}

@@ -5,6 +5,7 @@
 //! plane so. On the torus, planes may lie anywhere.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use glam::DVec3;
 use subzero::{EdgeId, TriangleMesh, VertexRule};
@@ -148,6 +149,17 @@ struct Planes {
 }
 
 impl Planes {
+    /// Where a place lies along the axis, in units of the spacing.
+    fn height(&self, place: DVec3) -> f64 {
+        (place[self.axis] - self.lower) / self.spacing
+    }
+
+    /// The planes that meet what lies between two heights, or come near it.
+    #[expect(clippy::cast_possible_truncation, reason = "the network is small beside 2^31 planes")]
+    fn planes_near(&self, [low, high]: [f64; 2]) -> RangeInclusive<i32> {
+        (low - self.near).ceil() as i32..=(high + self.near).floor() as i32
+    }
+
     fn meet_triangle(&mut self, corners: [DVec3; 3]) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
@@ -160,10 +172,9 @@ impl Planes {
     }
 
     /// Takes note of a point where a grain ends: a plane just inside it cuts off a tip that no element fits into.
-    #[expect(clippy::cast_possible_truncation, reason = "the network is small beside 2^31 planes")]
     fn meet_tip(&mut self, place: DVec3) {
-        let height = (place[self.axis] - self.lower) / self.spacing;
-        for plane in (height - self.near).ceil() as i32..=(height + self.near).floor() as i32 {
+        let height = self.height(place);
+        for plane in self.planes_near([height; 2]) {
             let depth = (height - f64::from(plane)).abs();
             // What lies in a plane is not cut off by it.
             if depth >= ROUNDING * f64::from(PLANES) {
@@ -174,12 +185,11 @@ impl Planes {
     }
 
     /// Takes note of what has these corners, and this sine to each plane that it meets or comes near.
-    #[expect(clippy::cast_possible_truncation, reason = "the network is small beside 2^31 planes")]
     fn meet(&mut self, corners: &[DVec3], sine: f64) {
-        let heights = corners.iter().map(|corner| (corner[self.axis] - self.lower) / self.spacing);
+        let heights = corners.iter().map(|corner| self.height(*corner));
         let low = heights.clone().fold(f64::INFINITY, f64::min);
         let high = heights.fold(f64::NEG_INFINITY, f64::max);
-        for plane in (low - self.near).ceil() as i32..=(high + self.near).floor() as i32 {
+        for plane in self.planes_near([low, high]) {
             // What lies in a plane is not cut by it.
             let lies_in = |end: f64| (end - f64::from(plane)).abs() < ROUNDING * f64::from(PLANES);
             if !(lies_in(low) && lies_in(high)) {
@@ -195,6 +205,17 @@ mod tests {
 
     use super::*;
     use crate::Junctions;
+
+    /// Eight cubes in a periodic box, around these places along each axis.
+    fn cubes(places: [f64; 2]) -> (Network, Vec<DVec3>) {
+        let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
+        let rows = places.into_iter().flat_map(|x| places.map(|y| [x, y]));
+        let seeds: Vec<DVec3> = rows.flat_map(|[x, y]| places.map(|z| DVec3::new(x, y, z))).collect();
+        let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("cubes");
+        let points = network.subdivide(&flat);
+        (network, points)
+    }
 
     #[test]
     fn planes_that_cut_off_tips_count_as_flat() {
@@ -218,13 +239,7 @@ mod tests {
     /// At each corner of a cube it ends, along all axes.
     #[test]
     fn corners_of_cubes_are_tips() {
-        let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
-        let places = [0.3, 0.8];
-        let rows = places.into_iter().flat_map(|x| places.map(|y| [x, y]));
-        let seeds: Vec<DVec3> = rows.flat_map(|[x, y]| places.map(|z| DVec3::new(x, y, z))).collect();
-        let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
-        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("cubes");
-        let points = network.subdivide(&flat);
+        let (network, points) = cubes([0.3, 0.8]);
         let Mesh::Triangles(mesh) = &network.finest_level().mesh else { panic!("in space") };
         let is_corner =
             |place: DVec3| place.to_array().iter().all(|x| ((x - 0.05) * 2.0).fract().abs() < 1e-9);
@@ -239,13 +254,7 @@ mod tests {
     /// Each plane meets eight cubes in four lines, as long as a period; two of them are boundaries between copies, which come twice.
     #[test]
     fn traces_are_the_lines_in_which_planes_meet_boundaries() {
-        let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
-        let places = [0.35, 0.85];
-        let rows = places.into_iter().flat_map(|x| places.map(|y| [x, y]));
-        let seeds: Vec<DVec3> = rows.flat_map(|[x, y]| places.map(|z| DVec3::new(x, y, z))).collect();
-        let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
-        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("cubes");
-        let points = network.subdivide(&flat);
+        let (network, points) = cubes([0.35, 0.85]);
         for axis in 0..3 {
             for plane in [5, 400, 1000] {
                 let traces = network.traces(&points, axis, plane);

@@ -42,6 +42,11 @@ pub struct RemeshTuning {
     pub wedge: f64,
     /// Gamma of a tetrahedron in such a wedge that is good enough.
     pub good_in_wedge: f64,
+    /// Share of the least angle around a point that is left when it moves to face a third corner. Without this limit and the next, a tetrahedron of four boxes with `--regularize 0.15` had a gamma
+    /// of 0.002, otherwise 0.040.
+    pub kept_share: f64,
+    /// Angle in radians (25 degrees) that is wide enough for such a point in any case.
+    pub kept_angle: f64,
     /// Radius around a fault in which elements become half as large, in units of the size asked for.
     pub halving_radius: f64,
     /// How often elements become smaller where something is wrong, before remeshing gives up.
@@ -69,6 +74,8 @@ impl Default for RemeshTuning {
             stagger: 0.3,
             wedge: 0.35,
             good_in_wedge: 0.25,
+            kept_share: 0.8,
+            kept_angle: 0.436,
             halving_radius: 1.5,
             refinements: 6,
             faults_of_first: 10,

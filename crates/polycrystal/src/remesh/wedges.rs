@@ -14,11 +14,6 @@ use crate::remesh::shaping::Shaping;
 use crate::remesh::torus::{Moved, seen_from_least};
 use crate::remesh::tuning::RemeshTuning;
 
-/// Share of the least angle around a point that is left when it moves, and the angle in radians (25 degrees) that is wide enough in any case. Without these limits a tetrahedron of four boxes with
-/// `--regularize 0.15` had a gamma of 0.002, otherwise 0.040.
-const KEPT_SHARE: f64 = 0.8;
-const KEPT_ANGLE: f64 = 0.436;
-
 /// A triangle of a part at an edge of its outline.
 #[derive(Debug, Clone, Copy)]
 struct AtEdge {
@@ -104,7 +99,7 @@ fn beside_wedges(shaped: &[Shaped<'_>], tuning: &RemeshTuning) -> Vec<Beside> {
     let beside = |((part, point), pairs): ((usize, u32), _)| {
         let shaping = &shaped[part].0;
         let least = (-shaping.worst_angle(&shaping.star(point))).acos();
-        Beside { part, point, pairs, kept: -(KEPT_SHARE * least).min(KEPT_ANGLE).cos() }
+        Beside { part, point, pairs, kept: -(tuning.kept_share * least).min(tuning.kept_angle).cos() }
     };
     of_points.into_iter().map(beside).collect()
 }
@@ -167,7 +162,6 @@ mod tests {
     use crate::remesh::gradation::Gradation;
     use crate::remesh::patch::Patch;
     use crate::remesh::reference::Reference;
-    use crate::remesh::tuning::RemeshTuning;
 
     /// Two squares that meet at 10 degrees in an edge a period apart, each with a point inside; those are not opposite each other.
     #[test]
