@@ -37,10 +37,8 @@ pub struct RemeshTuning {
     /// By how much of their spacing the first points of such lines that are apart are at other distances: triangles between points that are not opposite each other are wider. Without that,
     /// a fifth more triangles are narrow.
     pub stagger: f64,
-    /// Angle in radians (20 degrees) between boundaries at an edge, below which the third corners of their triangles face each other. Without that, the least gamma of four boxes with `--regularize
-    /// 0.15` was 0.009, otherwise 0.040, and two tetrahedra of nine cut boxes at equilibrium were below 0.1.
-    pub wedge: f64,
-    /// Gamma of a tetrahedron in such a wedge that is good enough.
+    /// Gamma of a tetrahedron between two triangles of a wedge that is good enough: below it their third corners move to face each other. Without that, the least gamma of four boxes with
+    /// `--regularize 0.15` was 0.009, otherwise 0.040, and two tetrahedra of nine cut boxes at equilibrium were below 0.1.
     pub good_in_wedge: f64,
     /// Share of the least angle around a point that is left when it moves to face a third corner. Without this limit and the next, a tetrahedron of four boxes with `--regularize 0.15` had a gamma
     /// of 0.002, otherwise 0.040.
@@ -72,7 +70,6 @@ impl Default for RemeshTuning {
             narrow_corner: 0.436,
             apart: 0.3,
             stagger: 0.3,
-            wedge: 0.35,
             good_in_wedge: 0.25,
             kept_share: 0.8,
             kept_angle: 0.436,

@@ -1,7 +1,7 @@
-//! Triangles of two boundaries that meet at a small angle: the third corners of those on both sides of an edge face each other.
+//! Triangles of two boundaries that meet at an acute angle: the third corners of those on both sides of an edge face each other.
 //!
 //! All four points of the tetrahedron between two such triangles are on boundaries, so that nothing can make it better later. It is as flat as the
-//! wedge in any case; where the third corners are apart, it is as flat as a sliver.
+//! wedge in any case; where the third corners are apart, it is as flat as a sliver, even in the tip of a grain whose boundaries meet at more than 20 degrees.
 
 use std::collections::BTreeMap;
 
@@ -86,7 +86,7 @@ fn beside_wedges(shaped: &[Shaped<'_>], tuning: &RemeshTuning) -> Vec<Beside> {
     for at_edge in at_edges(shaped).values() {
         for (number, one) in at_edge.iter().enumerate() {
             for other in &at_edge[number + 1..] {
-                if one.across(shaped).angle_between(other.across(shaped)) < tuning.wedge {
+                if one.across(shaped).dot(other.across(shaped)) > 0.0 {
                     for pair in [[*one, *other], [*other, *one]] {
                         if shaped[pair[0].part].0.patch.is_inside(pair[0].apex) {
                             of_points.entry((pair[0].part, pair[0].apex)).or_default().push(pair);
