@@ -3,6 +3,7 @@
 mod best;
 mod growth;
 mod level_elements;
+mod torn_grains;
 mod unfolding;
 mod volumes;
 mod widening;
@@ -201,10 +202,7 @@ impl<'a> Flow<'a> {
             for place in places {
                 self.groups.join_all(&place);
             }
-            let mut moves: Vec<DVec3> =
-                points.iter().zip(start).map(|(point, start)| *point - *start).collect();
-            self.groups.unite(&mut moves, |point| self.freedom(point), attempt);
-            points = displaced(start, &moves);
+            points = self.moved_as_one(&points, start, attempt);
         }
         if end == End::Open && folded == OnFold::Round {
             // What nothing rounds here, finer points may.
