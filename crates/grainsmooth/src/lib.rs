@@ -147,7 +147,7 @@ pub use summary::{CellsSummary, ListedSummary, Summary};
 pub use tables::cell_table::{CellTable, TableFormat};
 pub use tables::statistics::{NetworkStatistics, StatisticsOutput};
 pub use volume_mesh::filled_plane::{FilledPlane, PlaneQuality};
-pub use volume_mesh::quality::{ShapeHistogram, TetrahedronQuality};
+pub use volume_mesh::quality::{PoorTetrahedron, ShapeHistogram, TetrahedronQuality};
 pub use volume_mesh::{CurvedEdges, VolumeMesh};
 
 /// What most programs need.

@@ -59,8 +59,25 @@ impl ShapeHistogram {
     }
 }
 
+/// A tetrahedron of little quality.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PoorTetrahedron {
+    /// Its gamma.
+    pub gamma: f64,
+    /// Its grain.
+    pub grain: u32,
+    /// Where it is.
+    pub place: [f64; 3],
+}
+
+/// Most tetrahedra that are named as poor.
+const MOST_POOR: usize = 100;
+
+/// Gamma of a tetrahedron below which it is poor.
+const POOR: f64 = 0.1;
+
 /// How good tetrahedra are, by gamma: three times the radius of the ball within one divided by that of the ball around it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TetrahedronQuality {
     /// Number of tetrahedra.
     pub count: usize,
@@ -72,10 +89,8 @@ pub struct TetrahedronQuality {
     pub mean: f64,
     /// How many are below 0.1.
     pub below_tenth: usize,
-    /// Where the worst one is.
-    pub worst_place: [f64; 3],
-    /// Its grain.
-    pub worst_grain: u32,
+    /// The worst one, and the next up to a hundred that are below 0.1, the worst first.
+    pub worst: Vec<PoorTetrahedron>,
     /// Gamma, from 0 to 1.
     pub gammas: ShapeHistogram,
     /// The least angle between the faces of each, in degrees; 70.5 of a regular one.
@@ -99,17 +114,22 @@ impl VolumeMesh {
         let shapes = self.shapes();
         let mut all: Vec<(f64, usize)> = shapes.iter().map(|shape| shape.gamma).zip(0..).collect();
         all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let (least, worst) = *all.first()?;
-        let place = self.corners(worst).iter().sum::<DVec3>() / 4.0;
+        let (least, _) = *all.first()?;
+        let below_tenth = all.partition_point(|(gamma, _)| *gamma < POOR);
+        let poor = |(gamma, number): &(f64, usize)| PoorTetrahedron {
+            gamma: *gamma,
+            grain: self.grains[*number].0,
+            place: (self.corners(*number).iter().sum::<DVec3>() / 4.0).to_array(),
+        };
+        let worst = all[..below_tenth.clamp(1, MOST_POOR)].iter().map(poor).collect();
         let gammas = ShapeHistogram::new(shapes.iter().map(|shape| shape.gamma), 1.0);
         Some(TetrahedronQuality {
             count: all.len(),
             least,
             first_percentile: all[all.len() / 100].0,
             mean: gammas.mean,
-            below_tenth: all.partition_point(|(gamma, _)| *gamma < 0.1),
-            worst_place: place.to_array(),
-            worst_grain: self.grains[worst].0,
+            below_tenth,
+            worst,
             gammas,
             least_angles: ShapeHistogram::new(shapes.iter().map(|shape| shape.least_angle), 80.0),
             aspect_ratios: ShapeHistogram::new(shapes.iter().map(|shape| shape.aspect_ratio), 10.0),
@@ -138,11 +158,11 @@ fn shape(corners: [DVec3; 4], mean_volume: f64) -> TetrahedronShape {
 
 impl fmt::Display for TetrahedronQuality {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, least, first_percentile, mean, below_tenth, worst_place, worst_grain, .. } = self;
-        let [x, y, z] = worst_place;
+        let Self { count, least, first_percentile, mean, below_tenth, worst, .. } = self;
+        let PoorTetrahedron { grain, place: [x, y, z], .. } = &worst[0];
         write!(
             out,
-            "{count}, gamma {mean:.3} on the mean, a hundredth below {first_percentile:.3}, {below_tenth} below 0.1, least {least:.3} in grain {worst_grain} at {x:.4} {y:.4} {z:.4}; least angle between faces {:.1} degrees, largest aspect ratio {:.1}",
+            "{count}, gamma {mean:.3} on the mean, a hundredth below {first_percentile:.3}, {below_tenth} below 0.1, least {least:.3} in grain {grain} at {x:.4} {y:.4} {z:.4}; least angle between faces {:.1} degrees, largest aspect ratio {:.1}",
             self.least_angles.least, self.aspect_ratios.largest
         )
     }

@@ -218,6 +218,7 @@ mod tests {
     use polycrystal::GrainId;
 
     use super::*;
+    use crate::volume_mesh::quality::PoorTetrahedron;
 
     /// Eight tetrahedra between a point and the faces of an octahedron: the best place is the middle.
     #[test]
@@ -273,10 +274,13 @@ mod tests {
         let volume = mesh.grain_volumes(1)[0];
         let fixed =
             [[0, 2], [0, 3], [1, 2], [1, 3], [0, 4], [1, 4], [2, 4], [3, 4], [0, 5], [1, 5], [2, 5], [3, 5]];
-        assert!(mesh.quality().expect("tetrahedra").least < 0.1);
+        let poor = mesh.quality().expect("tetrahedra");
+        assert!(poor.least < 0.1 && poor.below_tenth == 1);
+        assert_eq!(poor.worst, [PoorTetrahedron { gamma: poor.least, grain: 0, place: [0.0; 3] }]);
         mesh.repair(&fixed.into_iter().collect());
         let quality = mesh.quality().expect("tetrahedra");
         assert!(quality.least > 0.3, "{quality}");
+        assert!(quality.below_tenth == 0 && quality.worst.len() == 1);
         assert!((mesh.grain_volumes(1)[0] / volume - 1.0).abs() < 1e-12);
         assert_eq!(mesh.points[..6], points);
     }
