@@ -79,3 +79,23 @@ impl Flow<'_> {
         moves
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::torn_grains::tests::cluster;
+    use super::*;
+    use crate::{GrainId, Tuning, Volumes};
+
+    /// Its lines have edges of half its width, and edges of twenty times that to the centres of the boundaries that go out from there.
+    #[test]
+    fn rounding_leaves_the_points_of_a_small_grain_at_it() {
+        let (network, start) = cluster();
+        let flow = Flow::new(&network, 0, Volumes::Kept, network.mean_tension(), Tuning::default());
+        let own = flow.points_of(GrainId(12));
+        let width = 0.01;
+        let moves = flow.rounding(&start, &[own.clone()]);
+        let lengths: Vec<f64> = own.iter().map(|point| moves[*point as usize].length()).collect();
+        assert!(lengths.iter().any(|length| *length > 1e-3 * width));
+        assert!(lengths.iter().all(|length| *length < 0.25 * width), "{lengths:?}");
+    }
+}
