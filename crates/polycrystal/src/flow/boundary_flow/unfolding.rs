@@ -93,7 +93,7 @@ mod tests {
         let flow = Flow::new(&network, 0, Volumes::Kept, network.mean_tension(), Tuning::default());
         let own = flow.points_of(GrainId(12));
         let width = 0.01;
-        let moves = flow.rounding(&start, &[own.clone()]);
+        let moves = flow.rounding(&start, std::slice::from_ref(&own));
         let lengths: Vec<f64> = own.iter().map(|point| moves[*point as usize].length()).collect();
         assert!(lengths.iter().any(|length| *length > 1e-3 * width));
         assert!(lengths.iter().all(|length| *length < 0.25 * width), "{lengths:?}");
