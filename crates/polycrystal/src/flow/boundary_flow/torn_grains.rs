@@ -41,7 +41,7 @@ impl Flow<'_> {
     }
 
     /// The control points of a grain, in order.
-    pub(super) fn points_of(&self, grain: GrainId) -> Vec<u32> {
+    fn points_of(&self, grain: GrainId) -> Vec<u32> {
         let elements = self.network.level(self.level).elements();
         let boundaries = &self.network.levels()[self.level].boundary_of;
         let is_of_grain = |boundary: BoundaryId| {
@@ -57,14 +57,14 @@ impl Flow<'_> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use voronoi::{Domain, Tessellation};
 
     use super::*;
     use crate::{Freedom, Junctions, Network, Tuning, Volumes};
 
     /// Six cells around one in the middle of a cube, a hundredth of its width, and one beside each wall. The one in the middle is the last.
-    pub(in crate::flow::boundary_flow) fn cluster() -> (Network, Vec<DVec3>) {
+    fn cluster() -> (Network, Vec<DVec3>) {
         let ways = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
         let around = |distance: f64| ways.map(|way| DVec3::splat(0.5) + distance * way);
         let seeds: Vec<DVec3> =
