@@ -214,7 +214,7 @@ impl<'a> Flow<'a> {
     /// The grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
     /// disc for r^2 / 2.
     fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
-        let volumes = self.network.grain_volumes(self.surface(), &self.refined(points));
+        let volumes = self.volumes_at(points);
         let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let dimension = self.network.domain().dimension();
         let radius = 0.5 * dimension.ball_diameter(volume);
@@ -366,6 +366,11 @@ impl<'a> Flow<'a> {
     /// The points of the level that carries the flow.
     fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
         self.network.subdivide_between(self.level, self.surface, points)
+    }
+
+    /// The volumes of grains on that level.
+    fn volumes_at(&self, points: &[DVec3]) -> Vec<f64> {
+        self.network.grain_volumes(self.surface(), &self.refined(points))
     }
 
     /// The points of the finest level.

@@ -123,10 +123,6 @@ impl Flow<'_> {
         Ok(Trial { points: extrapolated, volumes, error, worst })
     }
 
-    fn volumes_at(&self, points: &[DVec3]) -> Vec<f64> {
-        self.network.grain_volumes(self.surface(), &self.refined(points))
-    }
-
     /// The square of the smallest grain's radius.
     fn least_square(&self, volumes: &[f64]) -> f64 {
         let least = volumes.iter().copied().fold(f64::INFINITY, f64::min).max(0.0);

@@ -15,21 +15,17 @@ impl Flow<'_> {
     /// some had ten thousand times their volume. Such a grain moves as one too.
     pub(super) fn moved_as_one(&mut self, points: &[DVec3], start: &[DVec3], attempt: usize) -> Vec<DVec3> {
         let mut moves: Vec<DVec3> = points.iter().zip(start).map(|(point, start)| *point - *start).collect();
-        let before = self.volumes_now(points);
+        let before = self.volumes_at(points);
         self.groups.unite(&mut moves, |point| self.freedom(point), attempt);
         loop {
             let moved = displaced(start, &moves);
-            let torn = self.torn(&before, &self.volumes_now(&moved));
+            let torn = self.torn(&before, &self.volumes_at(&moved));
             if torn.is_empty() {
                 return moved;
             }
             torn.iter().for_each(|points| self.groups.join_all(points));
             self.groups.unite(&mut moves, |point| self.freedom(point), 0);
         }
-    }
-
-    fn volumes_now(&self, points: &[DVec3]) -> Vec<f64> {
-        self.network.grain_volumes(self.surface(), &self.refined(points))
     }
 
     /// The points of each grain that is torn, given the volumes of all before and after; none whose points move as one already.
@@ -90,9 +86,9 @@ mod tests {
         own.iter().for_each(|point| points[*point as usize] += DVec3::X * 0.2);
         let mut torn = points.clone();
         torn[own[0] as usize] -= DVec3::X * 0.1;
-        assert!(!flow.torn(&flow.volumes_now(&start), &flow.volumes_now(&torn)).is_empty());
+        assert!(!flow.torn(&flow.volumes_at(&start), &flow.volumes_at(&torn)).is_empty());
         let moved = flow.moved_as_one(&points, &start, 0);
-        let volume = |points: &[DVec3]| flow.volumes_now(points)[small.index()];
+        let volume = |points: &[DVec3]| flow.volumes_at(points)[small.index()];
         assert!((volume(&moved) - volume(&start)).abs() < 1e-9 * volume(&start));
         let by = |point: u32| moved[point as usize] - start[point as usize];
         assert!(by(far).x > 0.0 && own.iter().all(|point| by(*point) == by(far)));
