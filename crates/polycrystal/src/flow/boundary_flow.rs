@@ -1,10 +1,10 @@
 //! Curvature flow of the points of one level.
 
 mod best;
+mod giving_way;
 mod growth;
 mod level_elements;
-mod torn_grains;
-mod unfolding;
+mod rounding;
 mod volumes;
 mod widening;
 
@@ -25,7 +25,7 @@ use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
-use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
+use crate::flow::tied_points::{Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
@@ -34,6 +34,7 @@ use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
+use giving_way::GivingWay;
 pub(crate) use growth::{Grown, change_of_step};
 use level_elements::{LevelElements, LevelSectors};
 pub(crate) use volumes::has_kept_volumes;
@@ -46,6 +47,9 @@ pub(crate) const FREE_TOLERANCE: f64 = 1e-3;
 
 /// Change of the cosine of a bend that counts as none.
 pub(crate) const SLIGHT_BEND: f64 = 1e-9;
+
+/// Most attempts in a row to mend what the finest level folds, of which none leaves fewer places folded than there were.
+const MENDING_ATTEMPTS: usize = 3;
 
 /// A number of steps on one level.
 pub(crate) struct Stage {
@@ -67,13 +71,20 @@ pub(crate) enum End {
     Finished,
 }
 
-/// What becomes of places that are folded after a stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum OnFold {
-    /// They go back toward where they were.
+/// What becomes of places that the finest level folds at the end of a stage.
+#[derive(Debug, Clone, Copy)]
+enum Mending {
+    /// Points there have moved too far from where it did not fold, and are carried along.
     GiveWay,
-    /// They are rounded: where they were is folded too.
+    /// It folded before anything moved: they go to the middle of their neighbours.
     Round,
+}
+
+/// Points at the end of a stage, those of the finest level, and the points that each place depends on that folds there.
+struct Ending {
+    points: Vec<DVec3>,
+    surface: Vec<DVec3>,
+    places: Vec<Vec<u32>>,
 }
 
 /// A network whose points of one level move.
@@ -125,24 +136,6 @@ impl<'a> Flow<'a> {
         stage: &Stage,
         progress: &mut dyn FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let groups = self.groups.clone();
-        match self.run_from(start, stage, OnFold::GiveWay, progress) {
-            Err(error @ NetworkError::Folded { .. }) => {
-                let Some(unfolded) = self.unfolded(start) else { return Err(error) };
-                self.groups = groups;
-                self.run_from(&unfolded, stage, OnFold::Round, progress)
-            }
-            result => result,
-        }
-    }
-
-    fn run_from(
-        &mut self,
-        start: &[DVec3],
-        stage: &Stage,
-        folded: OnFold,
-        progress: &mut dyn FnMut(usize, &[DVec3]),
-    ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
         let finest = self.finest_sectors();
         let mut last_energy = f64::INFINITY;
@@ -166,49 +159,57 @@ impl<'a> Flow<'a> {
             last_energy = energy;
         }
         drop(surface);
-        self.finished(best.into_points().unwrap_or(points), start, stage.end, folded, &finest)
+        self.finished(best.into_points().unwrap_or(points), start, stage.end, &finest)
     }
 
     /// The points at the end of a stage, good where its end has to be. The finest level, which may be large, is looked at in the end alone.
     fn finished(
-        &mut self,
+        &self,
         mut points: Vec<DVec3>,
         start: &[DVec3],
         end: End,
-        folded: OnFold,
         finest: &LazyCell<LevelSectors<'a>, impl FnOnce() -> LevelSectors<'a>>,
     ) -> Result<Vec<DVec3>, NetworkError> {
-        // Where the finest level folds though no step did, all has moved too far from where it did not.
-        let (mut count, mut grains) = (0, Vec::new());
-        for attempt in 0..ATTEMPTS {
-            check_cancelled();
-            let surface = match end {
-                End::Open => self.finest_points(&points),
-                End::Volumes | End::Finished => self.restored(&mut points)?,
-            };
-            let places = self.folded_places(&surface, finest);
-            count = places.len();
-            grains = self.folded_grains(&surface, finest);
-            if count == 0 {
-                if end == End::Finished {
-                    self.widen_all(&mut points, surface, finest);
+        let mut giving_way = LazyCell::new(|| GivingWay::new(self, start));
+        let surface = self.surface_at_end(&mut points, end)?;
+        let places = self.folded_places(&surface, finest);
+        let mut best = Ending { points, surface, places };
+        for way in [Mending::GiveWay, Mending::Round] {
+            let (mut points, mut places) = (best.points.clone(), best.places.clone());
+            let mut attempts = 0;
+            while !best.places.is_empty() && attempts < MENDING_ATTEMPTS {
+                check_cancelled();
+                points = match way {
+                    Mending::GiveWay => giving_way.points(&points, &places),
+                    Mending::Round => displaced(&points, &self.rounding(&points, &places)),
+                };
+                let surface = self.surface_at_end(&mut points, end)?;
+                places = self.folded_places(&surface, finest);
+                attempts += 1;
+                if places.len() < best.places.len() {
+                    best = Ending { points: points.clone(), surface, places: places.clone() };
+                    attempts = 0;
                 }
-                return Ok(points);
             }
-            if folded == OnFold::Round {
-                points = displaced(&points, &self.rounding(&points, &places));
-                continue;
-            }
-            for place in places {
-                self.groups.join_all(&place);
-            }
-            points = self.moved_as_one(&points, start, attempt);
         }
-        if end == End::Open && folded == OnFold::Round {
-            // What nothing rounds here, finer points may.
-            return Ok(points);
+        match (best.places.is_empty(), end) {
+            (true, End::Finished) => self.widen_all(&mut best.points, best.surface, finest),
+            // What nothing mends here, finer points may.
+            (true, _) | (false, End::Open) => {}
+            (false, End::Volumes | End::Finished) => {
+                let grains = self.folded_grains(&best.surface, finest);
+                return Err(NetworkError::Folded { count: best.places.len(), grains });
+            }
         }
-        Err(NetworkError::Folded { count, grains })
+        Ok(best.points)
+    }
+
+    /// The points of the finest level at the end of a stage.
+    fn surface_at_end(&self, points: &mut [DVec3], end: End) -> Result<Vec<DVec3>, NetworkError> {
+        match end {
+            End::Open => Ok(self.finest_points(points)),
+            End::Volumes | End::Finished => self.restored(points),
+        }
     }
 
     /// The grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a

@@ -57,11 +57,6 @@ impl TiedPoints {
         left
     }
 
-    /// How many groups some control points are of.
-    pub(crate) fn set_count(&self, points: &[u32]) -> usize {
-        self.0.set_count(points)
-    }
-
     /// Makes some control points move as one.
     pub(crate) fn join_all(&mut self, points: &[u32]) {
         points.windows(2).for_each(|pair| self.0.join(pair[0], pair[1]));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{End, Flow, OnFold};
+use super::{End, Flow};
 use crate::flow::relaxation::{TIME_OF_KEPT_TOPOLOGY, check_grains_are_left};
 use crate::{GrainId, NetworkError};
 
@@ -91,7 +91,7 @@ impl Flow<'_> {
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
         }
-        self.finished(points, start, End::Finished, OnFold::GiveWay, &self.finest_sectors())
+        self.finished(points, start, End::Finished, &self.finest_sectors())
     }
 
     /// A step at once and in halves, and where both lead together.
