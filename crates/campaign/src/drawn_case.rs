@@ -137,6 +137,9 @@ fn place(draw: &mut Draw, options: &Options) -> &'static str {
     draw.one_of(&[",place=clustered", ",place=dispersed"])
 }
 
+/// Most grains that are divided into others.
+const MOST_DIVIDED: u32 = 50;
+
 /// Draws what divides grains, after the phases: into parts of a half to a quarter of their width.
 fn inside(draw: &mut Draw, domain: &Domain, count: u32, options: &mut Options) {
     // Freely growing parts vanish soon, and so do those of the twins and clusters of files.
@@ -149,6 +152,8 @@ fn inside(draw: &mut Draw, domain: &Domain, count: u32, options: &mut Options) {
     let pattern = match draw.one_of(&["lamellae", "lamellae across x", "voronoi"]) {
         "lamellae" => format!("lamellae(width={length:?})"),
         "lamellae across x" => format!("lamellae(width={length:?},normal=x)"),
+        // Each grain becomes up to 64: of more, a run would be one of some ten thousand grains.
+        _ if count > MOST_DIVIDED => return,
         _ => format!("voronoi(diameter={length:?})"),
     };
     options.set("inside", [pattern]);
