@@ -137,7 +137,7 @@ fn place(draw: &mut Draw, options: &Options) -> &'static str {
     draw.one_of(&[",place=clustered", ",place=dispersed"])
 }
 
-/// Most grains that are divided into others.
+/// Most grains that are divided into others, each into up to 64: of more, a run would be one of some ten thousand grains.
 const MOST_DIVIDED: u32 = 50;
 
 /// Draws what divides grains, after the phases: into parts of a half to a quarter of their width.
@@ -152,7 +152,6 @@ fn inside(draw: &mut Draw, domain: &Domain, count: u32, options: &mut Options) {
     let pattern = match draw.one_of(&["lamellae", "lamellae across x", "voronoi"]) {
         "lamellae" => format!("lamellae(width={length:?})"),
         "lamellae across x" => format!("lamellae(width={length:?},normal=x)"),
-        // Each grain becomes up to 64: of more, a run would be one of some ten thousand grains.
         _ if count > MOST_DIVIDED => return,
         _ => format!("voronoi(diameter={length:?})"),
     };

@@ -10,8 +10,8 @@ use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
 use crate::{Freedom, Level, Mesh, NetworkError};
 
-/// Attempts at a step (and at the whole flow), each with what the last one broke moving as one.
-pub(crate) const ATTEMPTS: usize = 24;
+/// Attempts at a step, each with what the last one broke moving as one.
+const ATTEMPTS: usize = 24;
 
 /// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
 const WHOLE_ATTEMPTS: usize = 12;
@@ -79,7 +79,7 @@ impl TiedPoints {
     }
 
     /// Gives all points of each group the mean of their displacements, for an attempt that is counted from 0.
-    pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
+    fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
         for group in self.0.of_several() {
             let sum: DVec3 = group.iter().map(|point| moves[*point as usize]).sum();
             let mean = freedom(&group, &of_point).project(sum / group.len() as f64);

@@ -1,7 +1,6 @@
 //! What folds in the end of a stage gives way: the motion of the points around is smoothed.
 
 use glam::DVec3;
-use subzero::EdgeId;
 
 use super::Flow;
 use crate::flow::tied_points::{Numbering, TiedPoints};
@@ -36,7 +35,7 @@ impl<'a> GivingWay<'a> {
         let freedom = |group| copies.freedom(group, |point| flow.freedom(point));
         let freedoms: Vec<Freedom> = (0..copies.group_count()).map(freedom).collect();
         let edges: Vec<[u32; 2]> = match flow.control_mesh() {
-            Mesh::Triangles(mesh) => (0..mesh.counts().edges).map(|edge| mesh.edge(EdgeId(edge))).collect(),
+            Mesh::Triangles(mesh) => mesh.edges().collect(),
             Mesh::Segments(mesh) => mesh.segments().to_vec(),
         };
         let numbers = copies.numbers();
