@@ -1,4 +1,4 @@
-//! What is told of grains that Gmsh cannot fill.
+//! Grains that are filled through Gmsh, and what is told of those that it cannot fill.
 
 #![cfg(unix)]
 
@@ -48,4 +48,20 @@ fn grains_that_cannot_be_filled_are_named_and_all_others_are_filled() {
     // None: what Gmsh cannot fill at a time is filled grain by grain.
     command("").assert().success();
     workplace.command("check a.inp").assert().success();
+}
+
+/// In a box thinner than an element, edges of the network lead from a point to its own copy. Their bent middles were once written half a chord away from those of their copies.
+#[test]
+fn middles_of_edges_once_around_a_thin_box_are_tied_where_they_are() {
+    let test = "middles_of_edges_once_around_a_thin_box_are_tied_where_they_are";
+    if let Err(error) = grainsmooth::check_gmsh() {
+        return skip(test, &error.to_string());
+    }
+    let workplace = Workplace::new();
+    for seed in [1, 2, 4] {
+        let grains = format!("--seeds 8 --rng-seed {seed} --periodic x,z --box 1 1 0.15 -n 1");
+        let elements = "--elements-per-grain 1 --small-features merge --order 2 --volume-mesh -o a.vtu";
+        workplace.run(&format!("{grains} {elements}"));
+        workplace.command("check a.vtu").assert().success();
+    }
 }

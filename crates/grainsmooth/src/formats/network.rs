@@ -58,7 +58,7 @@ impl Polycrystal {
         if self.file().volume.order != Some(2) {
             return Ok((linear, pairs));
         }
-        let mut elements = linear.quadratic(middles);
+        let elements = linear.quadratic(middles);
         elements.tie_middles(&self.network, &mut pairs);
         Ok((elements, pairs))
     }

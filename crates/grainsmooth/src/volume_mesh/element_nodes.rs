@@ -109,8 +109,8 @@ impl<'a> ElementNodes<'a> {
         corners.iter().chain(middles).copied().collect()
     }
 
-    /// Adds to pairs of points those of the middles of edges between them: edges of the network that are others moved by whole periods. Puts the middles where these lead.
-    pub(crate) fn tie_middles(&mut self, network: &Network, pairs: &mut Vec<PeriodicPair<u32>>) {
+    /// Adds to pairs of points those of the middles of edges between them: edges of the network that are others moved by whole periods.
+    pub(crate) fn tie_middles(&self, network: &Network, pairs: &mut Vec<PeriodicPair<u32>>) {
         if pairs.is_empty() || self.middles.is_empty() {
             return;
         }
@@ -126,7 +126,6 @@ impl<'a> ElementNodes<'a> {
         edges.dedup();
         // An edge by its originals and the periods between them, whatever the periods from there to it.
         let mut firsts: BTreeMap<(u32, u32, Translation), (u32, Translation)> = BTreeMap::new();
-        let points = self.points.to_mut();
         for edge in edges {
             let Some(&middle) = self.middles.get(&edge) else { continue };
             let [(a, from_a), (b, from_b)] = edge.map(place);
@@ -134,13 +133,6 @@ impl<'a> ElementNodes<'a> {
             let (primary, from_primary) = *firsts.entry(key).or_insert((middle, from));
             if primary != middle {
                 let translation = from - from_primary;
-                let ends = edge.map(|end| points[end as usize]);
-                let mut place = points[primary as usize] + translation.vector(network.domain());
-                // What both ends have on a wall the sum may miss by a last place.
-                for axis in (0..3).filter(|axis| ends[0][*axis] == ends[1][*axis]) {
-                    place[axis] = ends[0][axis];
-                }
-                points[middle as usize] = place;
                 pairs.push(PeriodicPair { secondary: middle, primary, translation });
             }
         }
