@@ -13,11 +13,12 @@ use std::time::{Duration, Instant};
 
 use cancellation::check_cancelled;
 use glam::DVec3;
-use polycrystal::GrainId;
+use polycrystal::{GrainId, validate};
 use rayon::prelude::*;
 use voronoi::Dimension;
 
 use crate::formats::connected::ConnectedParts;
+use crate::run::elements_reached::TrianglesNarrow;
 use crate::volume_mesh::VolumeMesh;
 use crate::{Error, Polycrystal, Stage};
 use batch::Batch;
@@ -85,12 +86,40 @@ impl Polycrystal {
         check_gmsh()?;
         let start = Instant::now();
         let mut mesh = self.filled_in_batches(TRIANGLES)?;
+        self.slide(&mut mesh)?;
         if let Some(curved) = self.curved.clone() {
             mesh.curve(&self.network, curved);
         }
         self.volume_mesh = Some(mesh);
         self.add_time(Stage::Filling, start.elapsed());
         Ok(self)
+    }
+
+    /// Slides points of boundaries for tetrahedra beside them, unless boundaries fold there.
+    fn slide(&mut self, mesh: &mut VolumeMesh) -> Result<(), Error> {
+        let pairs = self.network.periodic_vertices(&self.points, self.axes_cut_at_box())?;
+        let start = mesh.points.clone();
+        if !mesh.slide(&self.network, &pairs) {
+            return Ok(());
+        }
+        let count = mesh.surface_points;
+        let Ok(certificate) = validate(&self.network, &mesh.points[..count]) else {
+            mesh.points = start;
+            return Ok(());
+        };
+        let motions: Vec<DVec3> =
+            start.iter().zip(&mesh.points).take(count).map(|(from, to)| *to - *from).collect();
+        mesh.slid = motions.iter().filter(|by| **by != DVec3::ZERO).count();
+        if let Some(curved) = &mut self.curved {
+            curved.slide(&self.network, &motions);
+        }
+        self.points.copy_from_slice(&mesh.points[..count]);
+        if let Some(reached) = &mut self.elements {
+            reached.narrow = self.network.narrow_triangles(&self.points).map(TrianglesNarrow::from);
+        }
+        self.validation.triangles = certificate.triangles;
+        self.validation.largest_volume_error = certificate.largest_volume_error;
+        Ok(())
     }
 
     /// The tetrahedra of all grains, filled batch by batch.

@@ -95,6 +95,12 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
             writeln!(out, "tetrahedra  {quality}")?;
         }
+        if let Some(slid @ 1..) = polycrystal.volume_mesh.as_ref().map(|mesh| mesh.slid) {
+            writeln!(
+                out,
+                "slid        {slid} points along boundaries, to where tetrahedra beside them are better"
+            )?;
+        }
         if let Some(quality) = polycrystal.plane_mesh.as_ref().and_then(FilledPlane::quality) {
             writeln!(out, "filled      {quality}")?;
         }

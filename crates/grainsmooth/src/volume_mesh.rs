@@ -8,6 +8,8 @@ pub(crate) mod element_shape;
 pub(crate) mod filled_plane;
 pub(crate) mod quality;
 pub(crate) mod repair;
+pub(crate) mod search;
+pub(crate) mod sliding;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -27,6 +29,8 @@ pub struct VolumeMesh {
     pub tetrahedra: Vec<[u32; 4]>,
     /// The grain of each.
     pub grains: Vec<GrainId>,
+    /// How many points of the network slid along its boundaries, to where tetrahedra beside them are better.
+    pub slid: usize,
     /// The middles of edges that may bend, by their ends, the smaller number first.
     pub middles: BTreeMap<[u32; 2], DVec3>,
     /// What became of these, where elements are of second order.

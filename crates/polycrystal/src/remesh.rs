@@ -25,7 +25,6 @@ mod skeleton;
 mod torus;
 mod tuning;
 mod volumes;
-mod wedges;
 
 use std::borrow::Cow;
 
@@ -49,7 +48,6 @@ use size_field::{Halved, SizeField, Surroundings};
 use skeleton::Skeleton;
 use torus::{Moved, Torus};
 pub use tuning::RemeshTuning;
-use wedges::face_across_wedges;
 
 /// How large elements are to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -321,7 +319,6 @@ fn shaped_parts(
         })
         .collect();
     separate_joints(&mut shaped, around, lines, numbering);
-    face_across_wedges(&mut shaped, domain, tuning);
     shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect()
 }
 

@@ -71,6 +71,8 @@ pub struct SummaryRecord {
     element_size: Option<ElementsReached>,
     /// Of grains that are filled.
     tetrahedra: Option<TetrahedronQuality>,
+    /// How many points slid along boundaries for them.
+    slid_points: Option<usize>,
     /// Of grains that are filled in the plane.
     filled: Option<PlaneQuality>,
     /// Of elements of second order on the smooth surface.
@@ -258,6 +260,7 @@ impl SummaryRecord {
             level: polycrystal.level(),
             element_size: polycrystal.elements.clone(),
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
+            slid_points: polycrystal.volume_mesh.as_ref().map(|mesh| mesh.slid),
             filled: polycrystal.plane_mesh.as_ref().and_then(FilledPlane::quality),
             curved_edges: polycrystal.curved_edges(),
             angles_before: synthesis.and_then(|made| made.angles_before).map(Spread::from),

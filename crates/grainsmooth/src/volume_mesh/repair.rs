@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
-use polycrystal::tetrahedron_gamma;
+use polycrystal::{Freedom, tetrahedron_gamma};
 
+use super::search::Star;
 use super::{VolumeMesh, volume};
 
-/// Gamma below which the points around a tetrahedron look for better places, and below which its edges may be halved.
+/// Gamma below which the points around a tetrahedron look for better places, and below which its edges may be halved and its points slide along boundaries.
 const POOR: f64 = 0.25;
-const BAD: f64 = 0.12;
+pub(super) const BAD: f64 = 0.12;
 
 /// Gamma that is good enough: the least of the tetrahedra around a point may fall to it where their mean grows. Of 200 periodic grains with five elements to a diameter, the mean of all grew from
 /// 0.726 to 0.742; two more sweeps added 0.001.
@@ -19,28 +20,7 @@ const FAIR: f64 = 0.4;
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// Rounds over all of them.
-const ROUNDS: usize = 6;
-
-/// Steps in which a better place is looked for, as shares of the mean edge around.
-const STEPS: [f64; 4] = [0.3, 0.15, 0.07, 0.03];
-
-/// Directions of the search: along axes and diagonals.
-const DIRECTIONS: [[f64; 3]; 14] = [
-    [1.0, 0.0, 0.0],
-    [-1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, -1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [0.0, 0.0, -1.0],
-    [0.6, 0.6, 0.6],
-    [-0.6, 0.6, 0.6],
-    [0.6, -0.6, 0.6],
-    [0.6, 0.6, -0.6],
-    [-0.6, -0.6, 0.6],
-    [-0.6, 0.6, -0.6],
-    [0.6, -0.6, -0.6],
-    [-0.6, -0.6, -0.6],
-];
+pub(super) const ROUNDS: usize = 6;
 
 /// The tetrahedra at each point, kept as these change.
 struct Repair<'a> {
@@ -78,16 +58,8 @@ impl VolumeMesh {
 }
 
 impl Repair<'_> {
-    fn gamma(&self, tetrahedron: usize) -> f64 {
-        tetrahedron_gamma(self.mesh.corners(tetrahedron))
-    }
-
-    fn worst(&self, tetrahedra: &[usize]) -> f64 {
-        tetrahedra.iter().map(|tetrahedron| self.gamma(*tetrahedron)).fold(f64::INFINITY, f64::min)
-    }
-
     fn poor(&self, limit: f64) -> Vec<usize> {
-        (0..self.mesh.tetrahedra.len()).filter(|tetrahedron| self.gamma(*tetrahedron) < limit).collect()
+        (0..self.mesh.tetrahedra.len()).filter(|tetrahedron| self.mesh.gamma(*tetrahedron) < limit).collect()
     }
 
     /// Moves points inside grains to the middle of the tetrahedra around, by volume, or some of the way there, where these are better on the mean.
@@ -132,26 +104,9 @@ impl Repair<'_> {
         moved
     }
 
-    /// Moves a point to where the worst of its tetrahedra is better.
     fn search(&mut self, point: u32) -> bool {
-        let (point, star) = (point as usize, self.stars[point as usize].clone());
-        let start = self.mesh.points[point];
-        let others = star.iter().flat_map(|tetrahedron| self.mesh.corners(*tetrahedron));
-        let (sum, count) =
-            others.fold((0.0, 0.0), |(sum, count), other| (sum + other.distance(start), count + 1.0));
-        let (mut best, mut place) = (self.worst(&star), start);
-        for step in STEPS {
-            for direction in DIRECTIONS {
-                let tried = place + DVec3::from(direction) * (step * sum / count);
-                self.mesh.points[point] = tried;
-                let worst = self.worst(&star);
-                if worst > best {
-                    (best, place) = (worst, tried);
-                }
-            }
-        }
-        self.mesh.points[point] = place;
-        place != start
+        let tetrahedra = self.stars[point as usize].clone();
+        self.mesh.search(&[Star { point, shift: DVec3::ZERO, tetrahedra }], Freedom::Everywhere)
     }
 
     fn halve_edges(&mut self) -> bool {
@@ -160,7 +115,7 @@ impl Repair<'_> {
             let [a, b, c, d] = self.mesh.tetrahedra[tetrahedron];
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
                 .map(|[from, to]| [from.min(to), from.max(to)]);
-            if self.gamma(tetrahedron) < BAD {
+            if self.mesh.gamma(tetrahedron) < BAD {
                 halved |=
                     edges.into_iter().filter(|edge| !self.fixed.contains(edge)).any(|edge| self.halve(edge));
             }
@@ -175,7 +130,7 @@ impl Repair<'_> {
             .copied()
             .filter(|tetrahedron| self.mesh.tetrahedra[*tetrahedron].contains(&to))
             .collect();
-        let before = self.worst(&around);
+        let before = self.mesh.worst(&around);
         let (count, kept) = (self.mesh.tetrahedra.len(), around.iter().map(|t| self.mesh.tetrahedra[*t]));
         let kept: BTreeMap<usize, [u32; 4]> = around.iter().copied().zip(kept).collect();
         let middle = u32::try_from(self.mesh.points.len()).expect("ids fit 32 bits");
@@ -190,7 +145,7 @@ impl Repair<'_> {
         let new: Vec<usize> = around.iter().copied().chain(count..self.mesh.tetrahedra.len()).collect();
         self.stars[middle as usize] = new.clone();
         self.search(middle);
-        if self.worst(&new) > before {
+        if self.mesh.worst(&new) > before {
             for tetrahedron in &around {
                 self.stars[from as usize].retain(|other| other != tetrahedron);
             }

@@ -183,9 +183,12 @@ impl<'a> Flow<'a> {
                     Mending::GiveWay => giving_way.points(&points, &places),
                     Mending::Round => displaced(&points, &self.rounding(&points, &places)),
                 };
-                let surface = self.surface_at_end(&mut points, end)?;
-                places = self.folded_places(&surface, finest);
                 attempts += 1;
+                let mut ended = points.clone();
+                // Where volumes cannot be right, the same places are mended once more.
+                let Ok(surface) = self.surface_at_end(&mut ended, end) else { continue };
+                points = ended;
+                places = self.folded_places(&surface, finest);
                 if places.len() < best.places.len() {
                     best = Ending { points: points.clone(), surface, places: places.clone() };
                     attempts = 0;

@@ -129,6 +129,21 @@ impl CurvedBoundaries {
         self.is_straight[self.originals[edge.index()].original as usize]
     }
 
+    /// Moves corners, and middles half as far as each end of their edges.
+    ///
+    /// # Panics
+    /// When there is not one motion for each point of the network.
+    pub fn slide(&mut self, network: &Network, motions: &[DVec3]) {
+        assert_eq!(motions.len(), self.corners.len(), "there must be one motion for each point");
+        self.corners.iter_mut().zip(motions).for_each(|(corner, by)| *corner += *by);
+        let level = network.finest_level();
+        for (edge, middle) in self.middles.iter_mut().enumerate() {
+            *middle +=
+                ends(&level.mesh, edge).map(|end| 0.5 * motions[end as usize]).into_iter().sum::<DVec3>();
+        }
+        self.put_on_walls(network);
+    }
+
     /// Puts some corners where the network has its points, and makes some edges straight, at all that are the same a period away too.
     ///
     /// # Panics
@@ -150,11 +165,7 @@ impl CurvedBoundaries {
         edges.for_each(|edge| self.is_straight[self.originals[edge.index()].original as usize] = true);
         let level = network.finest_level();
         for edge in (0..self.middles.len()).filter(|edge| self.is_straight[*edge]) {
-            let ends = match &level.mesh {
-                Mesh::Triangles(mesh) => mesh.edge(EdgeId(id(edge))),
-                Mesh::Segments(mesh) => mesh.segments()[edge],
-            };
-            let [from, to] = ends.map(|end| self.corners[end as usize]);
+            let [from, to] = ends(&level.mesh, edge).map(|end| self.corners[end as usize]);
             self.middles[edge] = from.midpoint(to);
         }
         self.put_on_walls(network);
@@ -293,6 +304,14 @@ impl CurvedBoundaries {
             }
             self.middles[edge] = sets.put_on_walls(self.walls[edge], place);
         }
+    }
+}
+
+/// The ends of an edge, in the plane of a segment.
+fn ends(mesh: &Mesh, edge: usize) -> [u32; 2] {
+    match mesh {
+        Mesh::Triangles(mesh) => mesh.edge(EdgeId(id(edge))),
+        Mesh::Segments(mesh) => mesh.segments()[edge],
     }
 }
 

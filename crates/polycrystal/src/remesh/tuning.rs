@@ -37,14 +37,6 @@ pub struct RemeshTuning {
     /// By how much of their spacing the first points of such lines that are apart are at other distances: triangles between points that are not opposite each other are wider. Without that,
     /// a fifth more triangles are narrow.
     pub stagger: f64,
-    /// Gamma of a tetrahedron between two triangles of a wedge that is good enough: below it their third corners move to face each other. Without that, the least gamma of four boxes with
-    /// `--regularize 0.15` was 0.009, otherwise 0.040, and two tetrahedra of nine cut boxes at equilibrium were below 0.1.
-    pub good_in_wedge: f64,
-    /// Share of the least angle around a point that is left when it moves to face a third corner. Without this limit and the next, a tetrahedron of four boxes with `--regularize 0.15` had a gamma
-    /// of 0.002, otherwise 0.040.
-    pub kept_share: f64,
-    /// Angle in radians (25 degrees) that is wide enough for such a point in any case.
-    pub kept_angle: f64,
     /// Radius around a fault in which elements become half as large, in units of the size asked for.
     pub halving_radius: f64,
     /// How often elements become smaller where something is wrong, before remeshing gives up.
@@ -70,9 +62,6 @@ impl Default for RemeshTuning {
             narrow_corner: 0.436,
             apart: 0.3,
             stagger: 0.3,
-            good_in_wedge: 0.25,
-            kept_share: 0.8,
-            kept_angle: 0.436,
             halving_radius: 1.5,
             refinements: 6,
             faults_of_first: 10,
