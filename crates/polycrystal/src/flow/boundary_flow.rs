@@ -48,7 +48,8 @@ pub(crate) const FREE_TOLERANCE: f64 = 1e-3;
 /// Change of the cosine of a bend that counts as none.
 pub(crate) const SLIGHT_BEND: f64 = 1e-9;
 
-/// Most attempts in a row to mend what the finest level folds, of which none leaves fewer places folded than there were.
+/// Most attempts in a row to mend what the finest level folds, of which none leaves fewer places folded than there were. With 6, 12 or 24 the same three of five hard networks come out good, 12 takes up to twice
+/// and 24 up to 2.6 times as long.
 const MENDING_ATTEMPTS: usize = 3;
 
 /// A number of steps on one level.
