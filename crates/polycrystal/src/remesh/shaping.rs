@@ -170,11 +170,7 @@ impl<'a> Shaping<'a> {
     }
 
     /// Moves the first end of an edge into the other, or both inside into the middle, if `is_right` says so of the worst angle before and the triangles after.
-    pub(crate) fn collapse(
-        &mut self,
-        ends: [u32; 2],
-        is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool,
-    ) -> bool {
+    fn collapse(&mut self, ends: [u32; 2], is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool) -> bool {
         let [from, to] = ends;
         if !self.patch.pinched(ends).is_empty() {
             return false;
@@ -225,7 +221,7 @@ impl<'a> Shaping<'a> {
         triangles.iter().map(cosine).fold(1.0, f64::min)
     }
 
-    pub(crate) fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
+    fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
         triangles.iter().map(|corners| least_angle(self.patch.places(*corners))).fold(0.0, f64::min)
     }
 
@@ -284,7 +280,7 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    pub(crate) fn star(&self, point: u32) -> Vec<[u32; 3]> {
+    fn star(&self, point: u32) -> Vec<[u32; 3]> {
         self.patch.star(point).iter().map(|triangle| self.patch.corners(*triangle)).collect()
     }
 
@@ -322,8 +318,7 @@ impl<'a> Shaping<'a> {
                 }
                 let star = self.star(point);
                 if self.worst_angle(&star) < good {
-                    has_moved |= self.search(point, &star, |shaping| shaping.worst_angle(&star))
-                        || self.collapse_to_widen(point, BETTER);
+                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point, BETTER);
                 }
             }
             self.flip();
@@ -333,12 +328,12 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    /// Moves a point to where the triangles around it are better by a measure; whether there is such a place nearby.
-    pub(crate) fn search(&mut self, point: u32, star: &[[u32; 3]], measure: impl Fn(&Self) -> f64) -> bool {
+    /// Moves a point to where the least angle of the triangles around it is larger; whether there is such a place nearby.
+    fn search(&mut self, point: u32, star: &[[u32; 3]]) -> bool {
         let Foot { normal, size, .. } = self.feet[point as usize];
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
-        let before = measure(self);
+        let before = self.worst_angle(star);
         for step in SEARCH_STEPS {
             let place = self.patch.place(point);
             let mut best = None;
@@ -347,8 +342,8 @@ impl<'a> Shaping<'a> {
                 let foot = self.reference.foot(place + by, self.feet[point as usize].triangle);
                 let old = (self.patch.place(point), self.feet[point as usize]);
                 let wanted = best.map_or(before, |(found, _)| found);
-                if self.move_if(point, foot, star, |shaping| measure(shaping) > wanted + BETTER) {
-                    best = Some((measure(self), foot));
+                if self.move_if(point, foot, star, |shaping| shaping.worst_angle(star) > wanted + BETTER) {
+                    best = Some((self.worst_angle(star), foot));
                     self.patch.points[point as usize] = old.0;
                     self.feet[point as usize] = old.1;
                 }
