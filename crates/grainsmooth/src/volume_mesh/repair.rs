@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
-use polycrystal::{Freedom, tetrahedron_gamma};
+use polycrystal::Freedom;
 
 use super::search::Star;
 use super::{VolumeMesh, volume};
@@ -58,17 +58,13 @@ impl VolumeMesh {
 }
 
 impl Repair<'_> {
-    fn poor(&self, limit: f64) -> Vec<usize> {
-        (0..self.mesh.tetrahedra.len()).filter(|tetrahedron| self.mesh.gamma(*tetrahedron) < limit).collect()
-    }
-
     /// Moves points inside grains to the middle of the tetrahedra around, by volume, or some of the way there, where these are better on the mean.
     fn smooth(&mut self) {
         for point in self.mesh.surface_points..self.mesh.points.len() {
             let star = &self.stars[point];
             let start = self.mesh.points[point];
             let gammas = |mesh: &VolumeMesh| {
-                let gammas = star.iter().map(|tetrahedron| tetrahedron_gamma(mesh.corners(*tetrahedron)));
+                let gammas = star.iter().map(|tetrahedron| mesh.gamma(*tetrahedron));
                 gammas.fold((0.0, f64::INFINITY), |(sum, least), gamma| (sum + gamma, gamma.min(least)))
             };
             let (mut sum, mut volumes) = (DVec3::ZERO, 0.0);
@@ -94,7 +90,8 @@ impl Repair<'_> {
     }
 
     fn move_points(&mut self) -> bool {
-        let corners = self.poor(POOR).into_iter().flat_map(|tetrahedron| self.mesh.tetrahedra[tetrahedron]);
+        let corners =
+            self.mesh.poor(POOR).into_iter().flat_map(|tetrahedron| self.mesh.tetrahedra[tetrahedron]);
         let inside: BTreeSet<u32> =
             corners.filter(|corner| *corner as usize >= self.mesh.surface_points).collect();
         let mut moved = false;
@@ -111,7 +108,7 @@ impl Repair<'_> {
 
     fn halve_edges(&mut self) -> bool {
         let mut halved = false;
-        for tetrahedron in self.poor(BAD) {
+        for tetrahedron in self.mesh.poor(BAD) {
             let [a, b, c, d] = self.mesh.tetrahedra[tetrahedron];
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
                 .map(|[from, to]| [from.min(to), from.max(to)]);

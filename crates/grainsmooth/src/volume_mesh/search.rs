@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use polycrystal::{Freedom, tetrahedron_gamma};
+use rayon::prelude::*;
 
 use super::VolumeMesh;
 
@@ -67,6 +68,12 @@ impl VolumeMesh {
             let is_kept = place.cmpeq(start[0]);
             self.points[star.point as usize] = DVec3::select(is_kept, *own, place + star.shift);
         }
+    }
+
+    /// The tetrahedra with a gamma below some limit, in order.
+    pub(super) fn poor(&self, limit: f64) -> Vec<usize> {
+        let all = (0..self.tetrahedra.len()).into_par_iter();
+        all.filter(|tetrahedron| self.gamma(*tetrahedron) < limit).collect()
     }
 
     pub(super) fn gamma(&self, tetrahedron: usize) -> f64 {

@@ -6,7 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use polycrystal::{Freedom, Network};
-use rayon::prelude::*;
 use voronoi::PeriodicPair;
 
 use super::VolumeMesh;
@@ -38,7 +37,8 @@ impl VolumeMesh {
         };
         let once = |mesh: &mut Self| {
             let original = |corner: u32| originals.get(&corner).copied().unwrap_or(corner);
-            let points: BTreeSet<u32> = mesh.bad_corners().into_iter().map(original).collect();
+            let corners = mesh.poor(BAD).into_iter().flat_map(|tetrahedron| mesh.tetrahedra[tetrahedron]);
+            let points: BTreeSet<u32> = corners.map(original).collect();
             let copies = |point| copies.get(&point).cloned().unwrap_or_else(|| vec![(point, DVec3::ZERO)]);
             let all = mesh.stars(points.into_iter().map(copies).collect());
             let slid = all.into_iter().filter(|stars| {
@@ -48,12 +48,6 @@ impl VolumeMesh {
             slid.count() > 0
         };
         (0..ROUNDS).take_while(|_| once(self)).count() > 0
-    }
-
-    fn bad_corners(&self) -> Vec<u32> {
-        let tetrahedra = (0..self.tetrahedra.len()).into_par_iter();
-        let bad = tetrahedra.filter(|tetrahedron| self.gamma(*tetrahedron) < BAD);
-        bad.flat_map_iter(|tetrahedron| self.tetrahedra[tetrahedron]).collect()
     }
 
     /// The stars of points and their copies, but for those with a tetrahedron between two copies: its volume is not linear in their place.

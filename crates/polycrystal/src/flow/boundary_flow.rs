@@ -187,7 +187,10 @@ impl<'a> Flow<'a> {
                 attempts += 1;
                 let mut ended = points.clone();
                 // Where volumes cannot be right, the same places are mended once more.
-                let Ok(surface) = self.surface_at_end(&mut ended, end) else { continue };
+                let surface = match self.surface_at_end(&mut ended, end) {
+                    Err(error) if error.is_tangle() => continue,
+                    surface => surface?,
+                };
                 points = ended;
                 places = self.folded_places(&surface, finest);
                 if places.len() < best.places.len() {
