@@ -19,6 +19,10 @@ const MEAN_EDGE: f64 = 0.8;
 /// spade panics at these: of 20 000 polygons 1e-13 to 1e-20 wide it did at two.
 const FLATTEST: f64 = 1e-12;
 
+/// Largest height of a triangle of which the corners may lie on one line but for rounding, in units of that of coordinates: once each where a line is divided
+/// in space, and in four sums of the projection.
+const ROUNDINGS: f64 = 8.0;
+
 /// A polygon's triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolygonTriangulation {
@@ -35,7 +39,7 @@ pub struct PolygonTriangulation {
 /// (Ruppert's refinement). The outline's own edges must be no longer, as they stay.
 ///
 /// None where double precision does not hold the polygon: when points of its outline coincide in its plane, its triangles are
-/// not a triangulation of the outline, or no number of points makes edges short enough.
+/// not a triangulation of the outline, one has no area but for rounding, or no number of points makes edges short enough.
 ///
 /// ```
 /// use glam::DVec3;
@@ -65,9 +69,9 @@ pub fn triangulate_polygon(outline: &[DVec3], edge_length: Option<f64>) -> Optio
         delaunay.add_constraint(ends[0], ends[1]);
     }
     if let Some(edge_length) = edge_length {
-        refine(&mut delaunay, outline.len(), edge_length / plane.size)?;
+        refine(&mut delaunay, outline.len(), edge_length / plane.size, plane.rounding)?;
     }
-    let triangles = inner_triangles(&delaunay, outline.len())?;
+    let triangles = inner_triangles(&delaunay, outline.len(), plane.rounding)?;
     let inner = delaunay.vertices().skip(outline.len());
     let inner_points = inner.map(|vertex| plane.lift(vertex.position())).collect();
     Some(PolygonTriangulation { inner_points, triangles })
@@ -78,6 +82,8 @@ struct Plane {
     origin: DVec3,
     axes: [DVec3; 2],
     size: f64,
+    /// Largest height, in that unit, of a triangle that may be one for rounding alone.
+    rounding: f64,
 }
 
 impl Plane {
@@ -92,7 +98,9 @@ impl Plane {
             .sum();
         let normal = doubled_area.try_normalize()?;
         let first = farthest.reject_from_normalized(normal).try_normalize()?;
-        Some(Self { origin, axes: [first, normal.cross(first)], size })
+        let largest = outline.iter().map(|point| point.abs().max_element()).fold(size, f64::max);
+        let rounding = ROUNDINGS * f64::EPSILON * largest / size;
+        Some(Self { origin, axes: [first, normal.cross(first)], size, rounding })
     }
 
     fn project(&self, point: DVec3) -> Point2<f64> {
@@ -108,14 +116,10 @@ impl Plane {
 }
 
 /// None when the outline is none, or too narrow to be filled.
-fn refine(delaunay: &mut Delaunay, outline_count: usize, edge_length: f64) -> Option<()> {
-    let is_flat = |face: FaceHandle<'_, InnerTag, Point2<f64>, (), CdtEdge<()>, ()>| {
-        let longest = face.adjacent_edges().map(|edge| edge.length_2()).into_iter().fold(0.0, f64::max);
-        2.0 * face.area() < FLATTEST * longest
-    };
-    // Those outside, between points on one side of the polygon, are as flat as rounding has it, and left alone.
+fn refine(delaunay: &mut Delaunay, outline_count: usize, edge_length: f64, rounding: f64) -> Option<()> {
+    // Refinement leaves alone what is outside, between points on one side of the polygon, and as flat as rounding has it.
     let is_inside = inside_faces(delaunay, outline_count)?;
-    if delaunay.inner_faces().any(|face| is_inside[face.fix().index()] && is_flat(face)) {
+    if delaunay.inner_faces().any(|face| is_inside[face.fix().index()] && is_flat(face, rounding)) {
         return None;
     }
     let mean_edge = MEAN_EDGE * edge_length;
@@ -147,6 +151,11 @@ fn refine(delaunay: &mut Delaunay, outline_count: usize, edge_length: f64) -> Op
     None
 }
 
+fn is_flat(face: FaceHandle<'_, InnerTag, Point2<f64>, (), CdtEdge<()>, ()>, rounding: f64) -> bool {
+    let longest = face.adjacent_edges().map(|edge| edge.length_2()).into_iter().fold(0.0, f64::max).sqrt();
+    2.0 * face.area() < longest * rounding.max(FLATTEST * longest)
+}
+
 /// Of each face by number, whether it lies inside the outline. None when that is no closed line of edges.
 fn inside_faces(delaunay: &Delaunay, outline_count: usize) -> Option<Vec<bool>> {
     let mut is_inside = vec![false; delaunay.num_all_faces()];
@@ -168,14 +177,15 @@ fn inside_faces(delaunay: &Delaunay, outline_count: usize) -> Option<Vec<bool>> 
     Some(is_inside)
 }
 
-/// The triangles inside the outline, if they are a triangulation of it.
-fn inner_triangles(delaunay: &Delaunay, outline_count: usize) -> Option<Vec<[u32; 3]>> {
+/// The triangles inside the outline, if they are a triangulation of it and none is flat.
+fn inner_triangles(delaunay: &Delaunay, outline_count: usize, rounding: f64) -> Option<Vec<[u32; 3]>> {
     let is_inside = inside_faces(delaunay, outline_count)?;
     let inside = delaunay.inner_faces().filter(|face| is_inside[face.fix().index()]);
     let number = |vertex: VertexHandle<Point2<f64>, (), CdtEdge<()>>| {
         u32::try_from(vertex.index()).expect("the points of a face fit 32 bits")
     };
-    let triangles: Vec<[u32; 3]> = inside.map(|face| face.vertices().map(number)).collect();
+    let corners = |face| (!is_flat(face, rounding)).then(|| face.vertices().map(number));
+    let triangles: Vec<[u32; 3]> = inside.map(corners).collect::<Option<_>>()?;
     // Euler's formula: what is inside has no holes and holds every point.
     let inner_count = delaunay.num_vertices() - outline_count;
     (triangles.len() == 2 * inner_count + outline_count - 2).then_some(triangles)
@@ -260,6 +270,24 @@ mod tests {
                 let ends = outline.windows(2).map(|ends| [(ends[0] - outline[0]) / scale, (ends[1] - outline[0]) / scale]);
                 let whole: DVec3 = ends.map(|[a, b]| a.cross(b)).sum();
                 prop_assert!((sum - whole).length() < 1e-12, "{sum} and {whole}");
+            }
+        }
+
+        /// A lattice of cells with seeds moved a little has such faces. Triangles between the points of the short line had no area.
+        #[test]
+        fn a_short_line_in_three_points_gives_triangles_with_an_area_or_nothing(
+            corner in prop::array::uniform2(1.0..1e4f64),
+            length in (-10.0..-5.0f64).prop_map(|power| 1e4 * 10f64.powf(power)),
+            slope in prop_oneof![Just(1.0), 0.1..1.0f64],
+            edge_length in prop::option::of(1e3..5e3f64),
+        ) {
+            let start = DVec3::new(corner[0], corner[1], 0.0);
+            let end = start + length * DVec3::new(slope, 1.0, 0.0);
+            let others = [DVec3::new(end.x, end.y + 5e3, 0.0), DVec3::new(start.x - 5e3, end.y + 5e3, 0.0)];
+            let outline = [others[1], start - 5e3 * DVec3::X, start, start.midpoint(end), end, others[0]];
+            if let Some(mesh) = triangulate_polygon(&outline, edge_length) {
+                let areas = doubled_areas(&outline, &mesh);
+                prop_assert!(areas.iter().all(|area| area.z > 0.0), "{areas:?}");
             }
         }
     }
