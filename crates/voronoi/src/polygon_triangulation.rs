@@ -15,12 +15,12 @@ const SMALLEST_ANGLE: f64 = 25.0;
 /// area are seldom equilateral, and too long edges are halved afterwards.
 const MEAN_EDGE: f64 = 0.8;
 
-/// Height of the flattest triangle to refine, in units of its longest edge. Circumcentres of flatter ones are infinite for rounding, and
+/// Height of the flattest triangle, in units of its longest edge. Circumcentres of flatter ones are infinite for rounding, and
 /// spade panics at these: of 20 000 polygons 1e-13 to 1e-20 wide it did at two.
 const FLATTEST: f64 = 1e-12;
 
-/// Largest height of a triangle of which the corners may lie on one line but for rounding, in units of that of coordinates: once each where a line is divided
-/// in space, and in four sums of the projection.
+/// Largest height of a triangle whose corners may lie on one line but for rounding, in units of the rounding of coordinates: each corner is rounded where its line is
+/// divided in space, and four times in the sums of the projection.
 const ROUNDINGS: f64 = 8.0;
 
 /// A polygon's triangles.

@@ -39,7 +39,8 @@ pub enum FaceMesh {
     /// is below 25 degrees.
     ///
     /// Lines are divided first, into equal parts and at least in two, for all their boundaries at once. A boundary
-    /// that needs no point inside gets the fan, unless it is a sliver in which the fan has longer edges.
+    /// that needs no point inside gets the fan, unless it is a sliver in which the fan has longer edges. So does one in which
+    /// rounding leaves triangles no area, as beside a line of 1e-8 of its size: there edges from the centre may be longer.
     Refined {
         /// In the unit of the domain.
         edge_length: f64,
