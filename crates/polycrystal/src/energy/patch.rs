@@ -6,6 +6,8 @@
 //! How area and volume change with the points of the surface ([`Triangle`]) is pulled back to the control points by the transposed weights
 //! of subdivision.
 
+use std::ops::{AddAssign, Mul};
+
 use glam::DVec3;
 use voronoi::Dimension;
 
@@ -100,135 +102,151 @@ impl LocalStencils {
         (0..self.starts.len() - 1).map(point).collect()
     }
 
-    /// Adds forces on the finer points to those on the coarser ones.
-    pub(crate) fn pull_back(&self, forces: &[DVec3], pulled: &mut [DVec3]) {
-        for (f, force) in forces.iter().enumerate() {
-            self.row(f).for_each(|(c, weight)| pulled[c] += *force * weight);
+    /// Adds what is at finer points, forces or masses, to what is at coarser ones.
+    pub(crate) fn pull_back<T: Copy + Mul<f64, Output = T> + AddAssign>(&self, fine: &[T], coarse: &mut [T]) {
+        for (f, at_fine) in fine.iter().enumerate() {
+            self.row(f).for_each(|(c, weight)| coarse[c] += *at_fine * weight);
         }
     }
 }
 
-/// Where what a patch brings to a step goes: as of [`Terms`](crate::energy::patches::Terms), 0 at first.
-pub(crate) struct PatchTerms<'a> {
-    pub(crate) gradient: &'a mut [DVec3],
-    pub(crate) volume_gradient: &'a mut [DVec3],
-    pub(crate) mass: &'a mut [f64],
-    pub(crate) stiffness: &'a mut [f64],
+/// What a boundary brings to a step at one of its points.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct PlaceTerms {
+    /// Of the energy, by the point.
+    pub(crate) gradient: DVec3,
+    /// Volume swept from the first side to the second, per displacement of the point.
+    pub(crate) volume_gradient: DVec3,
+    /// Share of the area over mobility that the point stands for: of each triangle a third, as of its volume gradient, so that no
+    /// volume gradient is longer than its mass. It has to be the same surface: masses of flat control triangles had gradients 200 times as
+    /// long beside them where triangles of unlike size meet, and points so light went through their neighbours as soon as a volume was
+    /// restored. Of a boundary without tension it is 0.
+    pub(crate) mass: f64,
+}
+
+impl AddAssign for PlaceTerms {
+    fn add_assign(&mut self, other: Self) {
+        self.gradient += other.gradient;
+        self.volume_gradient += other.volume_gradient;
+        self.mass += other.mass;
+    }
+}
+
+impl Mul<f64> for PlaceTerms {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        let Self { gradient, volume_gradient, mass } = self;
+        Self { gradient: gradient * factor, volume_gradient: volume_gradient * factor, mass: mass * factor }
+    }
 }
 
 impl Patch {
-    /// Adds the terms at the given control points, and gives area times tension, and the cone to the surface.
+    /// Adds the terms at the given control points, and the stiffness of each edge; gives area times tension, and the cone to the surface.
     pub(crate) fn add_terms(
         &self,
         points: &[DVec3],
         largest_cotangent: f64,
-        terms: PatchTerms<'_>,
+        terms: &mut [PlaceTerms],
+        stiffness: &mut [f64],
     ) -> (f64, Cone) {
         // From a point of the patch, for far from the origin volumes lose digits.
         let apex = points[self.control_points[0] as usize];
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
-        let PatchTerms { gradient, volume_gradient, mass, stiffness } = terms;
-        self.add_mass_and_stiffness(&local, largest_cotangent, mass, stiffness);
-        let tension = self.law.share * self.law.tension;
+        self.add_stiffness(&local, largest_cotangent, stiffness);
         let Some(Refinement { stencils, elements }) = &self.refinement else {
-            let [energy, volume] =
-                add_variation(&self.elements, &local, tension, [&mut *gradient, &mut *volume_gradient]);
-            return (energy, cone(apex, volume, volume_gradient, &self.elements));
+            let [energy, volume] = self.law.add_variation(&self.elements, &local, terms);
+            return (energy, cone(apex, volume, terms, &self.elements));
         };
         let surface = stencils.apply(&local);
-        let mut gradients = [vec![DVec3::ZERO; surface.len()], vec![DVec3::ZERO; surface.len()]];
-        let [energy, volume] =
-            add_variation(elements, &surface, tension, gradients.each_mut().map(Vec::as_mut_slice));
-        stencils.pull_back(&gradients[0], gradient);
-        stencils.pull_back(&gradients[1], volume_gradient);
-        (energy, cone(apex, volume, &gradients[1], elements))
+        let mut fine_terms = vec![PlaceTerms::default(); surface.len()];
+        let [energy, volume] = self.law.add_variation(elements, &surface, &mut fine_terms);
+        stencils.pull_back(&fine_terms, terms);
+        (energy, cone(apex, volume, &fine_terms, elements))
     }
 
-    /// Adds lumped masses, and the cotangent Laplacian times the tension as the stiffness of each edge.
-    fn add_mass_and_stiffness(
-        &self,
-        local: &[DVec3],
-        largest_cotangent: f64,
-        mass: &mut [f64],
-        stiffness: &mut [f64],
-    ) {
-        let Law { tension, mobility, share } = self.law;
+    /// Adds the cotangent Laplacian times the tension as the stiffness of each edge.
+    fn add_stiffness(&self, local: &[DVec3], largest_cotangent: f64, stiffness: &mut [f64]) {
+        let tension = self.law.share * self.law.tension;
         if tension == 0.0 {
             return;
         }
-        let (stiffness_share, mass_share) = (share * tension, share / mobility);
         let at = |point: u32| local[point as usize];
         match &self.elements {
             Elements::Triangles(triangles) => {
                 for (corners, across) in triangles.iter().zip(&self.edges_across) {
-                    let triangle = Triangle::new(corners.map(at));
-                    let cotangents = triangle.cotangents(largest_cotangent);
-                    for ((corner, edge), cotangent) in corners.iter().zip(across).zip(cotangents) {
-                        stiffness[*edge as usize] += 0.5 * stiffness_share * cotangent;
-                        mass[*corner as usize] += mass_share * triangle.doubled_area / 6.0;
+                    let cotangents = Triangle::new(corners.map(at)).cotangents(largest_cotangent);
+                    for (edge, cotangent) in across.iter().zip(cotangents) {
+                        stiffness[*edge as usize] += 0.5 * tension * cotangent;
                     }
                 }
             }
             Elements::Segments(segments) => {
                 for (ends, stiffness) in segments.iter().zip(stiffness) {
                     let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
-                    *stiffness += stiffness_share / length;
-                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * mass_share * length);
+                    *stiffness += tension / length;
                 }
             }
         }
     }
 }
 
-/// Adds how the energy and the volume of a surface change with its points to two fields, and gives both.
-fn add_variation(
-    elements: &Elements,
-    points: &[DVec3],
-    tension: f64,
-    [gradient, volume_gradient]: [&mut [DVec3]; 2],
-) -> [f64; 2] {
-    let (mut area, mut volume) = (0.0, 0.0);
-    let at = |point: u32| points[point as usize];
-    match elements {
-        Elements::Triangles(triangles) => {
-            for corners in triangles {
-                let triangle = Triangle::new(corners.map(at));
-                let Triangle { normal, doubled_area, .. } = triangle;
-                let half_pull =
-                    if doubled_area > 0.0 { normal * (0.5 * tension / doubled_area) } else { DVec3::ZERO };
-                for (corner, of_corner) in corners.iter().zip(triangle.gradients(half_pull)) {
-                    gradient[*corner as usize] += of_corner;
-                    volume_gradient[*corner as usize] += triangle.volume_gradient();
+impl Law {
+    /// Adds the terms of the points of a surface, and gives its energy and its volume.
+    fn add_variation(&self, elements: &Elements, points: &[DVec3], terms: &mut [PlaceTerms]) -> [f64; 2] {
+        let tension = self.share * self.tension;
+        let mass_share = if tension == 0.0 { 0.0 } else { self.share / self.mobility };
+        let (mut area, mut volume) = (0.0, 0.0);
+        let at = |point: u32| points[point as usize];
+        match elements {
+            Elements::Triangles(triangles) => {
+                for corners in triangles {
+                    let triangle = Triangle::new(corners.map(at));
+                    let Triangle { normal, doubled_area, .. } = triangle;
+                    let half_pull = if doubled_area > 0.0 {
+                        normal * (0.5 * tension / doubled_area)
+                    } else {
+                        DVec3::ZERO
+                    };
+                    for (corner, of_corner) in corners.iter().zip(triangle.gradients(half_pull)) {
+                        let terms = &mut terms[*corner as usize];
+                        terms.gradient += of_corner;
+                        terms.volume_gradient += triangle.volume_gradient();
+                        terms.mass += mass_share * doubled_area / 6.0;
+                    }
+                    area += 0.5 * doubled_area;
+                    volume += triangle_volume(corners.map(at));
                 }
-                area += 0.5 * doubled_area;
-                volume += triangle_volume(corners.map(at));
+            }
+            Elements::Segments(segments) => {
+                for ends in segments {
+                    let [start, end] = ends.map(at);
+                    let along = end - start;
+                    let length = along.length();
+                    let unit = along.normalize_or_zero() * tension;
+                    for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                        let terms = &mut terms[*end as usize];
+                        terms.gradient += unit * sign;
+                        terms.volume_gradient += along.cross(DVec3::Z) / 2.0;
+                        terms.mass += 0.5 * mass_share * length.max(f64::MIN_POSITIVE);
+                    }
+                    area += length;
+                    volume += segment_area([start, end]);
+                }
             }
         }
-        Elements::Segments(segments) => {
-            for ends in segments {
-                let [start, end] = ends.map(at);
-                let along = end - start;
-                let unit = along.normalize_or_zero() * tension;
-                for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
-                    gradient[*end as usize] += unit * sign;
-                    volume_gradient[*end as usize] += along.cross(DVec3::Z) / 2.0;
-                }
-                area += along.length();
-                volume += segment_area([start, end]);
-            }
-        }
+        [tension * area, volume]
     }
-    [tension * area, volume]
 }
 
-/// The cone to a surface whose volume and its gradient are those from the apex.
-fn cone(apex: DVec3, volume: f64, volume_gradient: &[DVec3], elements: &Elements) -> Cone {
+/// The cone to a surface whose volume, and how it changes with its points, are those from the apex.
+fn cone(apex: DVec3, volume: f64, terms: &[PlaceTerms], elements: &Elements) -> Cone {
     let dimension = match elements {
         Elements::Triangles(_) => Dimension::Three,
         Elements::Segments(_) => Dimension::Two,
     };
     // All points that move as one sweep along the sum of normals.
-    Cone::new(apex, volume, volume_gradient.iter().sum(), dimension)
+    Cone::new(apex, volume, terms.iter().map(|terms| terms.volume_gradient).sum(), dimension)
 }
 
 /// The place of an id in a sorted list that holds it.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use subzero::{EdgeId, FaceId};
 use voronoi::Dimension;
 
-use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, index_in};
+use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PlaceTerms, Refinement, index_in};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::Cone;
@@ -39,12 +39,7 @@ pub(crate) struct Terms {
     pub(crate) energy: f64,
     /// The cone to each patch's surface.
     pub(crate) cones: Vec<Cone>,
-    /// The gradient of the energy at each place.
-    pub(crate) gradient: Vec<DVec3>,
-    /// Volume swept from the first side to the second, per displacement of each place.
-    pub(crate) volume_gradient: Vec<DVec3>,
-    /// Share of the area over mobility that each place stands for.
-    pub(crate) mass: Vec<f64>,
+    pub(crate) of_place: Vec<PlaceTerms>,
     /// Stiffness of each edge.
     pub(crate) stiffness: Vec<f64>,
 }
@@ -130,24 +125,18 @@ impl Patches {
 
     /// What the patches bring to a step where control points are.
     pub(crate) fn terms(&self, points: &[DVec3]) -> Terms {
-        let place_count = self.patch_of_place.len();
-        let mut gradient = vec![DVec3::ZERO; place_count];
-        let mut volume_gradient = gradient.clone();
-        let mut mass = vec![0.0; place_count];
+        let mut of_place = vec![PlaceTerms::default(); self.patch_of_place.len()];
         let mut stiffness = vec![0.0; self.first_edges[self.patches.len()]];
-        let of_places = split(&mut gradient, &self.first_places)
+        let of_patches = split(&mut of_place, &self.first_places)
             .into_par_iter()
-            .zip(split(&mut volume_gradient, &self.first_places))
-            .zip(split(&mut mass, &self.first_places));
-        let of_edges = split(&mut stiffness, &self.first_edges);
-        let of_patch = |(patch, (((gradient, volume_gradient), mass), stiffness)): (&Patch, _)| {
+            .zip(split(&mut stiffness, &self.first_edges));
+        let add_terms = |(patch, (of_place, stiffness)): (&Patch, (&mut [PlaceTerms], &mut [f64]))| {
             check_cancelled();
-            let terms = PatchTerms { gradient, volume_gradient, mass, stiffness };
-            patch.add_terms(points, self.largest_cotangent, terms)
+            patch.add_terms(points, self.largest_cotangent, of_place, stiffness)
         };
-        let patches = self.patches.par_iter().zip(of_places.zip(of_edges));
-        let (energies, cones): (Vec<f64>, Vec<Cone>) = patches.map(of_patch).unzip();
-        Terms { energy: energies.iter().sum(), cones, gradient, volume_gradient, mass, stiffness }
+        let (energies, cones): (Vec<f64>, Vec<Cone>) =
+            self.patches.par_iter().zip(of_patches).map(add_terms).unzip();
+        Terms { energy: energies.iter().sum(), cones, of_place, stiffness }
     }
 }
 

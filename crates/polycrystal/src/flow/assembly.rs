@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use crate::energy::patch::PlaceTerms;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::pressure_response::{CHUNK, PressureResponse};
 use crate::flow::system::{Parts, softened};
@@ -108,7 +109,7 @@ fn masses(patches: &Patches, terms: &Terms, Unknowns { sizes, groups, .. }: &Unk
     let mass = |group: usize| {
         let masses = groups.members(group).iter().map(|point| {
             let places = patches.places_of_point(*point).iter();
-            let mass: f64 = places.map(|place| terms.mass[*place as usize]).sum();
+            let mass: f64 = places.map(|place| terms.of_place[*place as usize].mass).sum();
             mass / sizes[*point as usize].powi(2)
         });
         masses.sum::<f64>()
@@ -129,7 +130,7 @@ fn volume_gradients(
             let boundary = &network.boundaries()[patches.patch_of_place(place)];
             // Walls do not move, so what lies on them changes no volume.
             if boundary.wall.is_none() {
-                let gradient = terms.volume_gradient[place as usize];
+                let gradient = terms.of_place[place as usize].volume_gradient;
                 boundary
                     .signed_grains()
                     .for_each(|(grain, sign)| volume_gradients.add(grain, gradient * sign));
@@ -142,7 +143,7 @@ fn volume_gradients(
 /// The gradient of the energy by the displacement of each group.
 pub(crate) fn gradient(patches: &Patches, terms: &Terms, groups: &Numbering) -> Vec<DVec3> {
     let gradient = |group: usize| {
-        groups.places(group, patches).map(|place| terms.gradient[place as usize]).sum::<DVec3>()
+        groups.places(group, patches).map(|place| terms.of_place[place as usize].gradient).sum::<DVec3>()
     };
     in_chunks(groups).map(gradient).collect()
 }
@@ -173,8 +174,8 @@ fn sliding_masses(
         groups.members(group).iter().any(is_junction).then(|| {
             let places = groups.places(group, patches);
             let parts = places.map(|place| {
-                let place = place as usize;
-                (terms.volume_gradient[place], terms.mass[place])
+                let PlaceTerms { volume_gradient, mass, .. } = terms.of_place[place as usize];
+                (volume_gradient, mass)
             });
             (group, sliding_mass(parts))
         })
