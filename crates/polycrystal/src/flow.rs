@@ -5,6 +5,7 @@ pub(crate) mod balance;
 pub(crate) mod boundary_flow;
 pub(crate) mod dihedral_sectors;
 pub(crate) mod fan_flow;
+pub(crate) mod giving_way;
 pub(crate) mod growth_law;
 pub(crate) mod pressure_response;
 pub(crate) mod recipe;

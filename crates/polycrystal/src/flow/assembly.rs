@@ -37,13 +37,7 @@ pub(crate) fn assemble(
 ) -> Parts {
     let Unknowns { level, groups, .. } = *unknowns;
     let row = |group: usize, row: &mut NewRow<'_, f64>| {
-        let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
-        for [end, edge] in links {
-            let other = groups.numbers()[*end as usize];
-            if other as usize != group {
-                row.add(other, terms.stiffness[*edge as usize]);
-            }
-        }
+        links(patches, terms, groups, group).for_each(|(other, stiffness)| row.add(other, stiffness));
     };
     let freedoms = freedoms(network, unknowns);
     let softness_root = softness_root(unknowns, volumes);
@@ -68,7 +62,10 @@ pub(crate) fn assemble(
     }
 }
 
-/// How some unknowns whose masses resist give way to pressures, where volumes are kept.
+/// How some unknowns give way to pressures where their stiffness alone resists, and volumes are kept.
+///
+/// A pressure then moves a small element less than a large one, by about its area. Were it their masses that resist, all of a boundary would move
+/// alike: one that misses a hundredth of a large grain's volume then went through the small elements at its rim.
 pub(crate) fn pressure_response(
     network: &Network,
     patches: &Patches,
@@ -78,7 +75,7 @@ pub(crate) fn pressure_response(
     let freedoms = freedoms(network, unknowns);
     let by_group = volume_gradients(network, patches, terms, unknowns, &freedoms);
     let constraint = VolumeConstraint::new(by_group, network.grain_count());
-    PressureResponse::new(&masses(patches, terms, unknowns), &freedoms, Some(constraint))
+    PressureResponse::new(&stiffnesses(patches, terms, unknowns.groups), &freedoms, Some(constraint))
 }
 
 fn in_chunks(groups: &Numbering) -> impl IndexedParallelIterator<Item = usize> {
@@ -115,6 +112,25 @@ fn masses(patches: &Patches, terms: &Terms, Unknowns { sizes, groups, .. }: &Unk
         masses.sum::<f64>()
     };
     in_chunks(groups).map(mass).collect()
+}
+
+/// What holds each group to the others.
+fn stiffnesses(patches: &Patches, terms: &Terms, groups: &Numbering) -> Vec<f64> {
+    let stiffness = |group: usize| links(patches, terms, groups, group).map(|(_, stiffness)| stiffness).sum();
+    in_chunks(groups).map(stiffness).collect()
+}
+
+/// The groups at the other ends of a group's edges, boundary by boundary, and the stiffness of these edges.
+fn links(
+    patches: &Patches,
+    terms: &Terms,
+    groups: &Numbering,
+    group: usize,
+) -> impl Iterator<Item = (u32, f64)> {
+    let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
+    let to_groups =
+        links.map(|[end, edge]| (groups.numbers()[*end as usize], terms.stiffness[*edge as usize]));
+    to_groups.filter(move |(other, _)| *other as usize != group)
 }
 
 /// The gradients of the volumes of grains, of groups with these freedoms.

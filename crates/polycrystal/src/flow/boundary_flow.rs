@@ -1,10 +1,10 @@
 //! Curvature flow of the points of one level.
 
 mod best;
-mod giving_way;
 mod growth;
 mod level_elements;
 mod rounding;
+mod step;
 mod volumes;
 mod widening;
 
@@ -16,27 +16,23 @@ use rayon::prelude::*;
 use subzero::FaceId;
 use voronoi::Dimension;
 
-use crate::check::folds::is_folded;
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
-use crate::flow::assembly::{Unknowns, assemble, gradient};
+use crate::flow::assembly::{Unknowns, assemble};
 use crate::flow::pressure_response::CHUNK;
-use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
-use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
 use crate::flow::tied_points::{Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
-use crate::mesh::id::id;
-use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
-use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
+use crate::{GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
-use giving_way::GivingWay;
 pub(crate) use growth::{Grown, change_of_step};
 use level_elements::{LevelElements, LevelSectors};
+pub(crate) use step::SLIGHT_BEND;
+use step::Taken;
 pub(crate) use volumes::has_kept_volumes;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
@@ -44,9 +40,6 @@ const FEATURE_EDGES: f64 = 6.0;
 
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
 pub(crate) const FREE_TOLERANCE: f64 = 1e-3;
-
-/// Change of the cosine of a bend that counts as none.
-pub(crate) const SLIGHT_BEND: f64 = 1e-9;
 
 /// Most attempts in a row to mend what the finest level folds, of which none leaves fewer places folded than there were. With 6, 12 or 24 the same three of five hard networks come out good, 12 takes up to twice
 /// and 24 up to 2.6 times as long.
@@ -100,7 +93,10 @@ pub(crate) struct Flow<'a> {
     surface: usize,
     /// The elements of each boundary on that level.
     elements: LevelElements<'a>,
-    groups: TiedPoints,
+    /// Points that are copies of others move as these.
+    copies: TiedPoints,
+    /// What steps move as one: what earlier ones would have folded, too. It could not live, and the others find the way to rest around it.
+    tied: TiedPoints,
     volumes: Volumes,
     tuning: Tuning,
 }
@@ -115,7 +111,7 @@ impl<'a> Flow<'a> {
         tuning: Tuning,
     ) -> Self {
         let surface = network.level_count().min(level + 1);
-        let groups = TiedPoints::new(&network.levels()[level]);
+        let copies = TiedPoints::new(&network.levels()[level]);
         let (patches, elements) = rayon::join(
             || Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent),
             || LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface))),
@@ -125,7 +121,18 @@ impl<'a> Flow<'a> {
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
         check_cancelled();
-        Self { network, patches, sizes, level, surface, elements, groups, volumes, tuning }
+        Self {
+            network,
+            patches,
+            sizes,
+            level,
+            surface,
+            elements,
+            tied: copies.clone(),
+            copies,
+            volumes,
+            tuning,
+        }
     }
 
     /// Takes the steps of a stage.
@@ -144,7 +151,8 @@ impl<'a> Flow<'a> {
         let mut surface = self.refined(&points);
         for step in 1..=stage.steps {
             check_cancelled();
-            let energy = self.step(&mut points, &mut surface, stage.step_time)?;
+            let Taken { energy, broken } = self.step(&mut points, &mut surface, stage.step_time)?;
+            broken.iter().for_each(|points| self.tied.join_all(points));
             progress(step, &points);
             if stage.least_gain > 0.0
                 && let Some(defects) = self.defects(&surface, &finest)
@@ -171,7 +179,8 @@ impl<'a> Flow<'a> {
         end: End,
         finest: &LazyCell<LevelSectors<'a>, impl FnOnce() -> LevelSectors<'a>>,
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let mut giving_way = LazyCell::new(|| GivingWay::new(self, start));
+        let copies = self.copies.number();
+        let mut giving_way = self.giving_way(&copies, start);
         let surface = self.surface_at_end(&mut points, end)?;
         let places = self.folded_places(&surface, finest);
         let mut best = Ending { points, surface, places };
@@ -181,7 +190,14 @@ impl<'a> Flow<'a> {
             while !best.places.is_empty() && attempts < MENDING_ATTEMPTS {
                 check_cancelled();
                 points = match way {
-                    Mending::GiveWay => giving_way.points(&points, &places),
+                    Mending::GiveWay => {
+                        let ways: Vec<DVec3> =
+                            points.iter().zip(start).map(|(to, from)| *to - *from).collect();
+                        let mut moves = copies.means(&ways, |point| self.freedom(point));
+                        let places = places.iter().map(|points| copies.of(points.iter().copied()));
+                        giving_way.smooth(&mut moves, places.flatten());
+                        displaced(start, &copies.of_points(&moves))
+                    }
                     Mending::Round => displaced(&points, &self.rounding(&points, &places)),
                 };
                 attempts += 1;
@@ -232,63 +248,6 @@ impl<'a> Flow<'a> {
         is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
     }
 
-    /// One step of curvature flow of points, and of the surface with them; gives the energy before.
-    ///
-    /// What the step folds moves by its mean displacement instead, and as one from then on: it could not live. That is local: to solve the
-    /// step anew for all grains would take as many attempts as the worst place of all.
-    fn step(
-        &mut self,
-        points: &mut Vec<DVec3>,
-        surface: &mut Vec<DVec3>,
-        time: f64,
-    ) -> Result<f64, NetworkError> {
-        let terms = self.patches.terms(points);
-        let volumes = volumes_of_grains(self.network.boundaries(), &terms.cones, self.network.grain_count());
-        let missing = self.missing(&volumes);
-        let mut groups = self.groups.clone();
-        groups.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
-        let numbering = groups.number();
-        check_cancelled();
-        let system = self.system(&terms, &numbering, time, points);
-        let moves = match (self.volumes, self.control_mesh()) {
-            (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
-            (Volumes::Free, Mesh::Segments(_)) => {
-                let gradient_after = |moves: &[DVec3]| {
-                    let terms = self.patches.terms(&displaced(points, &numbering.of_points(moves)));
-                    gradient(&self.patches, &terms, &numbering)
-                };
-                system.implicit_displacement(gradient_after)
-            }
-        };
-        let mut moves = numbering.of_points(&moves);
-        check_cancelled();
-        let centering = self.centering(time);
-        if centering > 0.0 {
-            let within = tangential_moves(self.network, self.level, &self.patches, points, centering);
-            moves.par_iter_mut().zip(&within).with_min_len(CHUNK).for_each(|(by, within)| *by += *within);
-        }
-        let mut after = None;
-        let moved = groups.moved_unbroken(
-            points,
-            moves,
-            |point| self.freedom(point),
-            |moved| {
-                let broken = self.broken_elements(surface, after.insert(self.refined(moved))).into_iter();
-                broken.map(|element| self.dependencies(self.surface, element)).collect()
-            },
-        )?;
-        *surface = after.expect("what is moved was looked at");
-        *points = moved;
-        // What turns over in the plane as grains grow may be going on to vanish.
-        let is_growth_in_plane =
-            self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
-        if !is_growth_in_plane {
-            let level = &self.network.levels()[self.level];
-            self.groups = groups.without_grown_at_walls(&self.groups, level, |point| self.freedom(point));
-        }
-        Ok(terms.energy)
-    }
-
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
     fn defects(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
@@ -299,22 +258,6 @@ impl<'a> Flow<'a> {
             finest.folds(&self.network.subdivide_between(self.surface, self.finest(), surface))
         };
         Some(Defects { has_folds: !folds.is_empty(), residual })
-    }
-
-    /// How a control point can move.
-    fn freedom(&self, point: u32) -> Freedom {
-        self.network.freedom(self.network.levels()[self.level].walls[point as usize])
-    }
-
-    /// The share of its way to the centre of the triangles around that a point goes in a step. Where grains grow, a step of no time moves
-    /// nothing: points that move within a curved boundary leave it a little, and that counts as growth.
-    fn centering(&self, time: f64) -> f64 {
-        let usual =
-            TIME_OF_KEPT_TOPOLOGY / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
-        match self.volumes {
-            Volumes::Kept => self.tuning.centering,
-            Volumes::Free => self.tuning.centering * (time / usual).min(1.0),
-        }
     }
 
     fn system(&self, terms: &Terms, groups: &Numbering, time: f64, points: &[DVec3]) -> System {
@@ -363,6 +306,13 @@ impl<'a> Flow<'a> {
         }
     }
 
+    /// Some points, and all ends of short edges, as one.
+    fn with_short_edges(&self, tied: &TiedPoints, points: &[DVec3]) -> TiedPoints {
+        let mut groups = tied.clone();
+        groups.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
+        groups
+    }
+
     fn surface(&self) -> LevelView<'a> {
         self.network.level(self.surface)
     }
@@ -402,42 +352,6 @@ impl<'a> Flow<'a> {
         grains.sort_unstable();
         grains.dedup();
         grains
-    }
-
-    /// Elements that a step has turned too far, or bent too far and more than they were; given the points of the level that carries the flow
-    /// before and after.
-    fn broken_elements(&self, before: &[DVec3], after: &[DVec3]) -> Vec<u32> {
-        // Growth is asked for step by step: where a line shrinks it bends, and what is held there would not grow as it should.
-        let largest_bend = match self.volumes {
-            Volumes::Kept => self.tuning.largest_bend,
-            Volumes::Free => -1.0,
-        };
-        let LevelElements { level, boundaries, neighbors } = &self.elements;
-        let of_boundary = |boundary: usize| {
-            let own: Vec<u32> = boundaries.of(boundary).collect();
-            let normals = |points: &[DVec3]| -> Vec<DVec3> {
-                own.iter().map(|element| level.elements().normal(points, *element)).collect()
-            };
-            let [before, after] = [before, after].map(normals);
-            let is_turned = |index: &u32| {
-                let [before, after] = [&before, &after].map(|normals| normals[*index as usize]);
-                let turn = before.dot(after) - self.tuning.largest_turn * before.length() * after.length();
-                turn.is_nan() || turn < 0.0
-            };
-            let of_pair = |normals: &[DVec3], pair: [u32; 2]| pair.map(|index| normals[index as usize]);
-            let cosine = |pair: [DVec3; 2]| {
-                let [a, b] = pair.map(DVec3::normalize_or_zero);
-                a.dot(b)
-            };
-            let is_bent = |pair: &[u32; 2]| {
-                is_folded(of_pair(&after, *pair), largest_bend)
-                    && cosine(of_pair(&after, *pair)) < cosine(of_pair(&before, *pair)) - SLIGHT_BEND
-            };
-            let bent = neighbors.of(boundaries, boundary).into_iter().filter(is_bent).flatten();
-            let turned = (0..id(own.len())).filter(is_turned);
-            turned.chain(bent).map(|index| own[index as usize]).collect::<Vec<u32>>()
-        };
-        (0..boundaries.boundary_count()).into_par_iter().flat_map_iter(of_boundary).collect()
     }
 
     /// All control points that an element of a level depends on; those of the surface's element that it descends from.

@@ -9,10 +9,10 @@ use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::FREE_TOLERANCE;
 use crate::flow::boundary_flow::SLIGHT_BEND;
+use crate::flow::giving_way::GivingWay;
 use crate::flow::growth_law::GrowthLaw;
 use crate::flow::pressure_response::CHUNK;
 use crate::flow::system::{Parts, System, softened};
-use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
@@ -49,8 +49,7 @@ pub(crate) struct Taken {
 impl FanFlow<'_> {
     /// A step of the given time.
     ///
-    /// What it folds moves by its mean displacement instead. That is local: to solve the step anew for all cells would take as
-    /// many attempts as the worst place of all.
+    /// What it would fold gives way.
     pub(crate) fn step(&self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
         let Self { fans, tuning, .. } = *self;
         let terms = fans.terms(points, tuning.largest_cotangent);
@@ -69,14 +68,14 @@ impl FanFlow<'_> {
             self.follow(&law, mobilities, &mut parts);
         }
         let system = System::new(parts, time, tolerance);
-        let (moves, pressures) = system.displacement(&missing);
-        let mut groups = TiedPoints::apart(fans.point_count());
-        *points = groups.moved_unbroken(
-            points,
-            moves,
-            |point| freedoms[point as usize],
-            |moved| self.broken(&before, &fans.normals(moved)),
-        )?;
+        let (mut moves, pressures) = system.displacement(&missing);
+        let mut moved = Vec::new();
+        let neighbors = |point| self.neighbors(point, points);
+        GivingWay::new(neighbors, |point| freedoms[point as usize]).mend(&mut moves, |moves| {
+            moved = points.iter().zip(moves).map(|(point, by)| *point + *by).collect();
+            self.broken(&before, &fans.normals(&moved))
+        })?;
+        *points = moved;
         let pressures = pressures.iter().map(|pressure| pressure / time).collect();
         Ok(Taken { energy: terms.energy, pressures })
     }
@@ -100,6 +99,25 @@ impl FanFlow<'_> {
     /// As [`Fans::at_point`], but for walls.
     fn inside_at(&self, point: usize) -> impl Iterator<Item = (usize, usize)> {
         self.fans.at_point(point).filter(|(fan, _)| self.fans.wall(*fan).is_none())
+    }
+
+    /// The other ends of the edges of a point, fan by fan, and the distances to them.
+    fn neighbors(&self, point: u32, points: &[DVec3]) -> Vec<(u32, f64)> {
+        let of_slot = |(fan, slot): (usize, usize)| {
+            let slots = self.fans.slots_of(fan);
+            let (own, count) = (slots[slot], self.fans.rim_len(fan));
+            let others = if slot == count {
+                (0..count).collect()
+            } else {
+                vec![(slot + count - 1) % count, (slot + 1) % count, count]
+            };
+            others.into_iter().map(move |other| {
+                let other = slots[other];
+                (other.point, own.position(points).distance(other.position(points)))
+            })
+        };
+        let neighbors = self.fans.at_point(point as usize).flat_map(of_slot);
+        neighbors.filter(|(other, _)| *other != point).collect()
     }
 
     fn of_points<T: Send>(&self, of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {

@@ -8,13 +8,7 @@ use crate::energy::patches::Patches;
 use crate::flow::pressure_response::CHUNK;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
-use crate::{Freedom, Level, Mesh, NetworkError};
-
-/// Attempts at a step, each with what the last one broke moving as one.
-const ATTEMPTS: usize = 24;
-
-/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
-const WHOLE_ATTEMPTS: usize = 12;
+use crate::{Freedom, Level, Mesh};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -26,35 +20,9 @@ pub(crate) struct TiedPoints(DisjointSets);
 impl TiedPoints {
     /// Every point of a level on its own, but for those that are others moved by whole periods.
     pub(crate) fn new(level: &Level) -> Self {
-        let mut groups = Self::apart(level.vertex_count());
+        let mut groups = Self(DisjointSets::new(level.vertex_count()));
         level.copies.vertices.iter().for_each(|pair| groups.0.join(pair.secondary, pair.primary));
         groups
-    }
-
-    /// So many points, each on its own.
-    pub(crate) fn apart(count: usize) -> Self {
-        Self(DisjointSets::new(count))
-    }
-
-    /// All but the groups that walls hold to a line or altogether, and that had some of their points before and now have more: they break what is around, which moves on, and would grow
-    /// until nothing there moves.
-    pub(crate) fn without_grown_at_walls(
-        &self,
-        before: &Self,
-        level: &Level,
-        of_point: impl Fn(u32) -> Freedom,
-    ) -> Self {
-        let own = Self::new(level);
-        let mut left = own.clone();
-        for group in self.0.of_several() {
-            let parts = before.0.set_count(&group);
-            let has_grown = 1 < parts && parts < own.0.set_count(&group);
-            let is_held = matches!(freedom(&group, &of_point), Freedom::Along(_) | Freedom::Nowhere);
-            if !(has_grown && is_held) {
-                left.join_all(&group);
-            }
-        }
-        left
     }
 
     /// Makes some control points move as one.
@@ -78,47 +46,6 @@ impl TiedPoints {
         short.iter().for_each(|[a, b]| self.0.join(*a, *b));
     }
 
-    /// Gives all points of each group the mean of their displacements, for an attempt that is counted from 0.
-    fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
-        for group in self.0.of_several() {
-            let sum: DVec3 = group.iter().map(|point| moves[*point as usize]).sum();
-            let mean = freedom(&group, &of_point).project(sum / group.len() as f64);
-            group.iter().for_each(|point| moves[*point as usize] = mean);
-        }
-        if attempt >= WHOLE_ATTEMPTS {
-            moves.iter_mut().for_each(|by| *by *= 0.5);
-        }
-    }
-
-    /// Where points are after displacements, of which those that would break something give way: all points that it depends on move as one.
-    ///
-    /// `broken` gives these points, for each place that is broken with all points where it is told.
-    ///
-    /// # Errors
-    /// [`NetworkError::Folded`] where something is still broken after all attempts.
-    pub(crate) fn moved_unbroken<P: AsRef<[u32]>>(
-        &mut self,
-        points: &[DVec3],
-        mut moves: Vec<DVec3>,
-        freedom: impl Fn(u32) -> Freedom,
-        mut broken: impl FnMut(&[DVec3]) -> Vec<P>,
-    ) -> Result<Vec<DVec3>, NetworkError> {
-        self.unite(&mut moves, &freedom, 0);
-        let mut count = 0;
-        for attempt in 0..ATTEMPTS {
-            let pairs = points.par_iter().zip(&moves).with_min_len(CHUNK);
-            let moved: Vec<DVec3> = pairs.map(|(point, by)| *point + *by).collect();
-            let broken = broken(&moved);
-            count = broken.len();
-            if count == 0 {
-                return Ok(moved);
-            }
-            broken.iter().for_each(|points| self.join_all(points.as_ref()));
-            self.unite(&mut moves, &freedom, attempt);
-        }
-        Err(NetworkError::Folded { count, grains: Vec::new() })
-    }
-
     /// Numbers the groups from 0, in order of their smallest points.
     pub(crate) fn number(&self) -> Numbering {
         let (numbers, count) = self.0.numbers();
@@ -128,7 +55,7 @@ impl TiedPoints {
     }
 }
 
-/// TiedPoints by number.
+/// Tied points by number.
 pub(crate) struct Numbering {
     numbers: Vec<u32>,
     /// The control points of each group.
@@ -152,23 +79,35 @@ impl Numbering {
         &self.numbers
     }
 
+    /// The groups of some control points.
+    pub(crate) fn of(&self, points: impl IntoIterator<Item = u32>) -> Vec<u32> {
+        points.into_iter().map(|point| self.numbers[point as usize]).collect()
+    }
+
     /// The displacement of each control point, given those of the groups.
     pub(crate) fn of_points(&self, of_groups: &[DVec3]) -> Vec<DVec3> {
         let numbers = self.numbers.par_iter().with_min_len(CHUNK);
         numbers.map(|number| of_groups[*number as usize]).collect()
     }
 
+    /// The mean displacement of the points of each group, as far as all of them can move so; given those of points and how each can move.
+    pub(crate) fn means(&self, of_points: &[DVec3], freedom: impl Fn(u32) -> Freedom + Sync) -> Vec<DVec3> {
+        let mean = |group: usize| {
+            let members = self.members(group);
+            let sum: DVec3 = members.iter().map(|point| of_points[*point as usize]).sum();
+            self.freedom(group, &freedom).project(sum / members.len() as f64)
+        };
+        (0..self.group_count()).into_par_iter().with_min_len(CHUNK).map(mean).collect()
+    }
+
     /// How the points of a group can move as one, given how each can.
     pub(crate) fn freedom(&self, group: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
-        freedom(self.members(group), of_point)
+        let freedoms = self.members(group).iter().map(|point| of_point(*point));
+        freedoms.fold(Freedom::Everywhere, Freedom::and)
     }
 
     /// The control points of a group.
     pub(crate) fn members(&self, group: usize) -> &[u32] {
         self.members.of(group)
     }
-}
-
-fn freedom(group: &[u32], of_point: impl Fn(u32) -> Freedom) -> Freedom {
-    group.iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
 }

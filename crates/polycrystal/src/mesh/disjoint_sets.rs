@@ -28,33 +28,6 @@ impl DisjointSets {
         self.parents[a.max(b) as usize] = a.min(b);
     }
 
-    /// As [`Self::root`], with the forest as it is.
-    fn smallest(&self, mut member: u32) -> u32 {
-        while self.parents[member as usize] != member {
-            member = self.parents[member as usize];
-        }
-        member
-    }
-
-    /// The number of sets that some numbers are in.
-    pub(crate) fn set_count(&self, members: &[u32]) -> usize {
-        let mut sets: Vec<u32> = members.iter().map(|member| self.smallest(*member)).collect();
-        sets.sort_unstable();
-        sets.dedup();
-        sets.len()
-    }
-
-    /// The sets of more than one member, each sorted, in order of the smallest members.
-    pub(crate) fn of_several(&self) -> Vec<Vec<u32>> {
-        let joined = (0u32..).zip(&self.parents).filter(|(member, parent)| member != *parent);
-        let mut joined: Vec<[u32; 2]> =
-            joined.map(|(member, parent)| [self.smallest(*parent), member]).collect();
-        joined.sort_unstable();
-        let sets = joined.chunk_by(|a, b| a[0] == b[0]);
-        sets.map(|set| std::iter::once(set[0][0]).chain(set.iter().map(|[_, member]| *member)).collect())
-            .collect()
-    }
-
     /// The number of each member's set, counted from 0 in order of the smallest members, and how many sets there are.
     pub(crate) fn numbers(&self) -> (Vec<u32>, u32) {
         let (mut numbers, mut count) = (Vec::with_capacity(self.parents.len()), 0);

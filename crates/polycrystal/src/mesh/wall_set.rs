@@ -135,9 +135,10 @@ fn common(a: &[Wall], b: &[Wall]) -> Vec<Wall> {
 }
 
 /// How a point can move.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Freedom {
     /// In all directions.
+    #[default]
     Everywhere,
     /// Perpendicular to a unit vector.
     InPlane(DVec3),

@@ -221,11 +221,12 @@ fn least_sine(network: &Network, points: &[DVec3], axis: usize) -> f64 {
     sines.fold(1.0, f64::min)
 }
 
-/// Boundaries near an edge of the box that none meets there would have narrow triangles beside its long steps.
+/// Boundaries near an edge of the box that none meets there would have narrow triangles beside its long steps. Where boundaries meet the edge close to each other,
+/// points beside them slide along it for better angles: that makes a step longer and the next one shorter.
 #[test]
 fn edges_of_the_box_have_steps_as_short_as_those_of_boundaries() {
     let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
-    for (count, random_seed) in [(3, 1), (20, 2)] {
+    for (count, random_seed) in [(3, 1), (20, 2), (20, 3), (20, 4)] {
         let (network, points) = relaxed(&domain, &random_seeds(&domain, count, random_seed));
         let BoxCut { points: cut_points, .. } = network.cut_at_box(&points, false).expect("is cut");
         for along in 0..3 {
@@ -237,7 +238,9 @@ fn edges_of_the_box_have_steps_as_short_as_those_of_boundaries() {
             let longest = places.windows(2).map(|ends| ends[1] - ends[0]).fold(0.0, f64::max);
             // Edges of boundaries become shorter where planes cut them.
             let length = network.mean_edge_length(&points);
-            assert!(longest <= 1.1 * length, "{count} grains: {longest} beside {length}");
+            assert!(longest <= 1.5 * length, "{count} grains: {longest} beside {length}");
+            let mean = 1.0 / (places.len() - 1) as f64;
+            assert!(mean <= length, "{count} grains: {mean} beside {length}");
         }
     }
 }

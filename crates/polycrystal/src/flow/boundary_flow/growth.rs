@@ -52,7 +52,7 @@ impl Flow<'_> {
     /// # Errors
     /// [`NetworkError::GrainVanished`]; [`NetworkError::GrowthNotFollowed`]; [`NetworkError::Folded`].
     pub(crate) fn grow(
-        &mut self,
+        &self,
         start: &[DVec3],
         whole_time: f64,
         progress: &mut dyn FnMut(Grown<'_>),
@@ -67,7 +67,6 @@ impl Flow<'_> {
             let left = whole_time - passed;
             let is_last = step_time.min(longest) >= left;
             let time = if is_last { left } else { step_time.min(longest) };
-            let kept = self.groups.clone();
             let trial = self.try_step(&points, time);
             let error = trial.as_ref().map_or(f64::INFINITY, |trial| trial.error);
             step_time = time * change_of_step(error / LARGEST_ERROR);
@@ -82,7 +81,7 @@ impl Flow<'_> {
                     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "far fewer")]
                     progress(Grown { steps, left: left as usize, passed, points: &points });
                 }
-                _ if step_time >= LEAST_STEP * square => self.groups = kept,
+                _ if step_time >= LEAST_STEP * square => {}
                 Ok(Trial { worst, .. }) => {
                     let time = passed / self.network.mean_grain_size().powi(2);
                     let error = NetworkError::GrowthNotFollowed { grain: worst, time };
@@ -95,11 +94,9 @@ impl Flow<'_> {
     }
 
     /// A step at once and in halves, and where both lead together.
-    fn try_step(&mut self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
-        let groups = self.groups.clone();
+    fn try_step(&self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
         let mut at_once = points.to_vec();
         self.step(&mut at_once, &mut self.refined(points), time)?;
-        self.groups = groups;
         let mut halves = points.to_vec();
         let mut surface = self.refined(points);
         self.step(&mut halves, &mut surface, 0.5 * time)?;

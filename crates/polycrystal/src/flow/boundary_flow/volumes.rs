@@ -34,28 +34,20 @@ impl Flow<'_> {
 
     /// Moves points so that the grains of the finest level have the volumes of their cells.
     ///
-    /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
-    /// at last none.
+    /// Where short edges that are rigid leave some grain no way to change its volume, nothing is rigid.
     ///
     /// Gives the points of the finest level.
     pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
-        let free = TiedPoints::new(&self.network.levels()[self.level]);
-        let mut short = free.clone();
-        short.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let start = points.to_vec();
         let mut attempts = Vec::new();
-        let ways = [
-            ("restoring volumes, what folded moving as one", &self.groups),
-            ("restoring volumes, short edges rigid", &short),
-        ];
-        for (tried, groups) in ways {
-            match self.restore_with(groups, points) {
-                Err(error) if error.is_tangle() => error.give_up(tried, &mut attempts),
-                result => return result,
+        match self.restore_with(&self.with_short_edges(&self.copies, points), points) {
+            Err(error) if error.is_tangle() => {
+                error.give_up("restoring volumes, short edges rigid", &mut attempts);
             }
-            points.copy_from_slice(&start);
+            result => return result,
         }
-        self.restore_with(&free, points).map_err(|error| error.after(attempts))
+        points.copy_from_slice(&start);
+        self.restore_with(&self.copies, points).map_err(|error| error.after(attempts))
     }
 
     fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
