@@ -51,42 +51,27 @@ impl<'a> GivingWay<'a> {
     pub(crate) fn mend<P: AsRef<[u32]>>(
         &mut self,
         moves: &mut [DVec3],
-        mut broken: impl FnMut(&[DVec3]) -> Vec<P>,
+        broken: impl FnMut(&[DVec3]) -> Vec<P>,
     ) -> Result<(), NetworkError> {
-        let mut count = 0;
-        for _ in 0..ATTEMPTS {
-            let places = broken(moves);
-            count = places.len();
-            if count == 0 {
-                return Ok(());
-            }
+        until_unbroken(moves, broken, |moves, places| {
             self.smooth(moves, places.iter().flat_map(|place| place.as_ref()).copied());
-        }
-        Err(NetworkError::Folded { count, grains: Vec::new() })
+        })
     }
 
-    /// Changes motions until they break nothing, as [`Self::mend`], but smooths none: what is broken moves as one by the mean of its motions, together with what that
-    /// breaks beside it.
+    /// The same, but nothing is smoothed: what is broken moves as one by the mean of its motions, together with what that breaks beside it.
     ///
     /// # Errors
-    /// [`NetworkError::Folded`] where something is still broken after all attempts.
+    /// As of [`Self::mend`].
     pub(crate) fn mend_by_tying<P: AsRef<[u32]>>(
-        &mut self,
+        &self,
         moves: &mut [DVec3],
-        mut broken: impl FnMut(&[DVec3]) -> Vec<P>,
+        broken: impl FnMut(&[DVec3]) -> Vec<P>,
     ) -> Result<(), NetworkError> {
         let mut tied = Vec::new();
-        let mut count = 0;
-        for _ in 0..ATTEMPTS {
-            let places = broken(moves);
-            count = places.len();
-            if count == 0 {
-                return Ok(());
-            }
+        until_unbroken(moves, broken, |moves, places| {
             tied.extend(places);
             self.tie(moves, &tied);
-        }
-        Err(NetworkError::Folded { count, grains: Vec::new() })
+        })
     }
 
     /// Makes the unknowns of each place move by the mean of their motions, and places that share some as one.
@@ -193,6 +178,24 @@ impl<'a> GivingWay<'a> {
             moves[*unknown as usize] = at(&smoothed, *number as usize);
         }
     }
+}
+
+/// Changes motions where they break something until they do not.
+fn until_unbroken<P>(
+    moves: &mut [DVec3],
+    mut broken: impl FnMut(&[DVec3]) -> Vec<P>,
+    mut change: impl FnMut(&mut [DVec3], Vec<P>),
+) -> Result<(), NetworkError> {
+    let mut count = 0;
+    for _ in 0..ATTEMPTS {
+        let places = broken(moves);
+        count = places.len();
+        if count == 0 {
+            return Ok(());
+        }
+        change(moves, places);
+    }
+    Err(NetworkError::Folded { count, grains: Vec::new() })
 }
 
 /// Unknowns that move as one.
