@@ -86,15 +86,18 @@ impl EdgeTable {
         vertex_count: usize,
         creases: &[Crease],
     ) -> Result<Vec<f32>, MeshError> {
-        let mut sharpness = vec![0.0_f32; self.edges.len()];
-        for (index, crease) in creases.iter().enumerate() {
+        let edge = |(index, crease): (usize, &Crease)| {
             for vertex in crease.ends {
                 check_vertex("crease", index, vertex, vertex_count)?;
             }
             check_sharpness("crease", index, crease.sharpness)?;
-            let edge =
-                self.find(crease.ends).ok_or(MeshError::CreaseWithoutEdge { index, ends: crease.ends })?;
-            sharpness[edge as usize] = sharpness[edge as usize].max(crease.sharpness);
+            self.find(crease.ends).ok_or(MeshError::CreaseWithoutEdge { index, ends: crease.ends })
+        };
+        let edges: Vec<Result<u32, MeshError>> = creases.par_iter().enumerate().map(edge).collect();
+        let mut sharpness = vec![0.0_f32; self.edges.len()];
+        for (edge, crease) in edges.into_iter().zip(creases) {
+            let sharpness = &mut sharpness[edge? as usize];
+            *sharpness = sharpness.max(crease.sharpness);
         }
         Ok(sharpness)
     }

@@ -3,6 +3,8 @@
 //! Features are sparse (curves on a surface), so they are sorted lists beside the dense connectivity. Refining keeps
 //! them sorted: no search, no sort.
 
+use rayon::prelude::*;
+
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
 use crate::{EdgeId, MeshError, VertexRule};
@@ -34,7 +36,7 @@ impl Sharpness {
             ends(edge).map(|vertex| OutgoingEdge { vertex, edge, sharpness })
         };
         let mut outgoing_edges: Vec<OutgoingEdge> = edges.iter().flat_map(outgoing_edges_of).collect();
-        outgoing_edges.sort_by_key(|outgoing_edge| (outgoing_edge.vertex, outgoing_edge.edge));
+        outgoing_edges.par_sort_unstable_by_key(|outgoing_edge| (outgoing_edge.vertex, outgoing_edge.edge));
         Self { edges, outgoing_edges, corners: Vec::new() }
     }
 

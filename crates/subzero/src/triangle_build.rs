@@ -23,10 +23,11 @@ impl TriangleMesh {
     ) -> Result<Self, MeshError> {
         check_size("vertices", vertex_count)?;
         check_size("half-edges", triangles.len().saturating_mul(6))?;
-        check_triangles(vertex_count, &triangles)?;
         let half_edges: Vec<[u32; 2]> =
             triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        let table = EdgeTable::new(&half_edges);
+        let (are_good, table) =
+            rayon::join(|| check_triangles(vertex_count, &triangles), || EdgeTable::new(&half_edges));
+        are_good?;
         let mut edge_sharpness = table.crease_sharpness(vertex_count, features.creases)?;
         let is_soft = |&&(edge, _): &&(u32, _)| !is_infinite(edge_sharpness[edge as usize]);
         if let Some(&(_, [first, second])) = table.same_way.iter().find(is_soft) {
@@ -76,9 +77,10 @@ impl TriangleMesh {
         }
         // Triangles that a turn around the vertex meets, starting at each crease, or anywhere if there is none.
         let mut met = vec![0; self.vertex_count()];
-        for h in (0..id(3 * self.triangles.len())).filter(|&h| self.is_crease(self.edge_of(h))) {
-            met[self.start(h) as usize] += self.sector(h).count();
-        }
+        let creases = (0..id(3 * self.triangles.len())).into_par_iter();
+        let creases = creases.filter(|&h| self.is_crease(self.edge_of(h)));
+        let sectors: Vec<(u32, usize)> = creases.map(|h| (self.start(h), self.sector(h).count())).collect();
+        sectors.iter().for_each(|&(vertex, count)| met[vertex as usize] += count);
         let is_fixed = |&vertex: &u32| {
             let [triangles, mut met] = [triangles[vertex as usize], met[vertex as usize]];
             if triangles > 0 && met == 0 {
