@@ -33,7 +33,7 @@ use rayon::prelude::*;
 use voronoi::{Dimension, Translation};
 
 use crate::mesh::id::id;
-use crate::{BoundaryId, Certificate, Fault, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
+use crate::{BoundaryId, Certificate, Faults, Level, Mesh, Network, NetworkError, Surface, validate};
 use assembled::{Assembled, NewBoundary, assemble};
 pub use curved::CurvedBoundaries;
 use divide_lines::divide_lines;
@@ -185,7 +185,9 @@ impl Network {
         };
         until_valid(size, tuning, |halved, refinements| {
             if size.merges_short_lines {
-                around.short = ShortLines::new(self, &around, sides, tuning.short_line * size.length, halved);
+                let before = (refinements > 0).then_some(&around.short);
+                let length = tuning.short_line * size.length;
+                around.short = ShortLines::new(self, &around, sides, length, (halved, before));
             }
             around.check_lines(size, tuning)?;
             let sizes = SizeField::new(&around, size, halved, tuning);
@@ -243,40 +245,32 @@ fn until_valid(
     tuning: &RemeshTuning,
     mut remesh: impl FnMut(&[Halved], usize) -> Result<Result<Remeshed, Faulty>, NetworkError>,
 ) -> Result<Remeshed, NetworkError> {
-    let is_of_size = |fault: &Fault| {
-        matches!(
-            fault,
-            Fault::Folded { .. }
-                | Fault::Crossing { .. }
-                | Fault::NoArea { .. }
-                | Fault::DuplicateElements { .. }
-                | Fault::DuplicatePoints { .. }
-                | Fault::Pinched { .. }
-        )
-    };
     let mut halved = Vec::new();
-    let mut most_faults = None;
     for refinements in 0.. {
         let Faulty { faults, places } = match remesh(&halved, refinements)? {
             Ok(remeshed) => return Ok(remeshed),
             Err(faulty) => faulty,
         };
-        // On the triangles of another program or run, elements that become smaller may find ever more edges to fold at.
-        let most_faults = *most_faults.get_or_insert(tuning.faults_of_first * faults.0.len());
-        let is_hopeless = refinements == tuning.refinements || faults.0.len() > most_faults;
-        if is_hopeless || !faults.0.iter().all(is_of_size) {
+        if refinements == tuning.refinements || places.is_empty() {
             return Err(NetworkError::RemeshInvalid(faults));
         }
-        places.into_iter().for_each(|place| halve_at(&mut halved, place, size, tuning));
+        let mut more: Vec<Halved> = Vec::new();
+        for place in places {
+            // Faults that lie close together count as one: each would halve what the others did.
+            if !more.iter().any(|near| near.place.distance(place) < 0.5 * near.within) {
+                more.push(halved_at(place, &halved, size, tuning));
+            }
+        }
+        halved.extend(more);
     }
     unreachable!("refinements end")
 }
 
-/// Makes elements around a place half as large as they were there.
-fn halve_at(halved: &mut Vec<Halved>, place: DVec3, size: &ElementSize, tuning: &RemeshTuning) {
-    let was = halved.iter().filter(|near| near.place.distance(place) < near.within).map(|near| near.factor);
+/// Elements around a place half as large as they were there.
+fn halved_at(place: DVec3, before: &[Halved], size: &ElementSize, tuning: &RemeshTuning) -> Halved {
+    let was = before.iter().filter(|near| near.place.distance(place) < near.within).map(|near| near.factor);
     let was = was.fold(1.0, f64::min);
-    halved.push(Halved { place, within: tuning.halving_radius * was * size.length, factor: 0.5 * was });
+    Halved { place, within: tuning.halving_radius * was * size.length, factor: 0.5 * was }
 }
 
 /// One way from sizes to a network on the smooth surface; nobody has restored volumes or looked for faults yet.

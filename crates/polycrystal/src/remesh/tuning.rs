@@ -37,13 +37,11 @@ pub struct RemeshTuning {
     /// By how much of their spacing the first points of such lines that are apart are at other distances: triangles between points that are not opposite each other are wider. Without that,
     /// a fifth more triangles are narrow.
     pub stagger: f64,
-    /// Radius around a fault in which elements become half as large, in units of the size asked for.
+    /// Radius around a fault in which elements become half as large, and short lines stay, in units of the size there. Of 99 cut boxes of 20 grains with short lines as points, in
+    /// elements of two thirds of a diameter, 2 had no valid mesh with 3, and 6 with 1.5; in elements of a third, none and 1.
     pub halving_radius: f64,
     /// How often elements become smaller where something is wrong, before remeshing gives up.
     pub refinements: usize,
-    /// By how many times as many faults as at first remeshing gives up at once. In a box cut at its walls that was remeshed before, faults became six times as many from round to round, and
-    /// no round without them came; in smooth networks they become fewer.
-    pub faults_of_first: usize,
 }
 
 impl Default for RemeshTuning {
@@ -62,9 +60,8 @@ impl Default for RemeshTuning {
             narrow_corner: 0.436,
             apart: 0.3,
             stagger: 0.3,
-            halving_radius: 1.5,
+            halving_radius: 3.0,
             refinements: 6,
-            faults_of_first: 10,
         }
     }
 }
