@@ -15,7 +15,7 @@ use crate::{NetworkError, Side};
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 type Face = spade::handles::FixedFaceHandle<InnerTag>;
 
-/// Where along a wall to look for what it belongs to, as a share of it: seeds on lattices have boundaries in its middle.
+/// Where behind a piece to look for what a wall belongs to, as a share of the piece: of seeds on lattices others may end behind its middle.
 const OFF_MIDDLE: f64 = 0.381_966;
 
 /// Caps on all walls across periodic axes: of a grain toward the exterior. What lies within such a wall becomes caps of both
@@ -111,13 +111,8 @@ fn caps_of_line(
         let between = |pair: &[PeriodicVertex]| known(pair[0], true).or_else(|| known(pair[1], false));
         let mut sides: Vec<Option<Side>> = line.windows(2).map(between).collect();
         // Where no boundary meets the wall the same grain goes on.
-        let middle = || {
-            let mut at = pieces.domain.lower();
-            at[along] += OFF_MIDDLE * pieces.domain.size()[along];
-            at
-        };
         let first = sides.iter().copied().flatten().next_back().or(only_grain);
-        let first = first.or_else(|| seen_from_wall(pieces, axis, end, middle()));
+        let first = first.or_else(|| seen_from_wall(pieces, axis, end, behind_widest(pieces, axis)?));
         let mut last = first;
         for side in &mut sides {
             last = side.or(last);
@@ -329,6 +324,17 @@ fn rim(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<Periodi
         line.push(first.moved(far));
     }
     line
+}
+
+/// In the plane: the place on a wall behind the piece that is widest as seen from there. Elsewhere nothing may stand in the way: a grain may be small.
+fn behind_widest(pieces: &Pieces, axis: usize) -> Option<DVec3> {
+    let along = 1 - axis;
+    let ends = |piece: &Piece| [0, 1].map(|end| pieces.position(piece.corners[end])[along]);
+    let all = pieces.pieces.iter().map(ends);
+    let [start, end] = all.max_by(|a, b| (a[1] - a[0]).abs().total_cmp(&(b[1] - b[0]).abs()))?;
+    let mut at = pieces.domain.lower();
+    at[along] = start + OFF_MIDDLE * (end - start);
+    Some(at)
 }
 
 /// What a wall that no boundary meets near a place belongs to: the side, toward the wall, of the first piece across it from there.
