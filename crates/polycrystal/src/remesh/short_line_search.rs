@@ -50,7 +50,8 @@ impl ShortLines {
         around: &Surroundings<'_>,
         sides: impl Fn(BoundaryId) -> [Side; 2],
         length: f64,
-        (halved, before): (&[Halved], Option<&Self>),
+        halved: &[Halved],
+        before: Option<&Self>,
     ) -> Self {
         let Surroundings { level, mesh, points, torus, skeleton, parts, .. } = *around;
         let mut found = Self::default();
