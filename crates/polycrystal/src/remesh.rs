@@ -185,9 +185,7 @@ impl Network {
         };
         until_valid(size, tuning, |halved, refinements| {
             if size.merges_short_lines {
-                let before = (refinements > 0).then_some(&around.short);
-                let length = tuning.short_line * size.length;
-                around.short = ShortLines::new(self, &around, sides, length, halved, before);
+                around.short = ShortLines::new(self, &around, sides, tuning.short_line * size.length, halved);
             }
             around.check_lines(size, tuning)?;
             let sizes = SizeField::new(&around, size, halved, tuning);

@@ -79,9 +79,7 @@ pub(super) fn remeshed(
     };
     until_valid(size, tuning, |halved, refinements| {
         if size.merges_short_lines {
-            let before = (refinements > 0).then_some(&around.short);
-            let length = tuning.short_line * size.length;
-            around.short = ShortLines::new(network, &around, sides, length, halved, before);
+            around.short = ShortLines::new(network, &around, sides, tuning.short_line * size.length, halved);
         }
         let sizes = SizeField::new(&around, size, halved, tuning);
         let divided = divide_lines(&around, &sizes, tuning);

@@ -43,21 +43,20 @@ fn moved<Id: Ord + Copy>(around: &Around<Id>, by: Translation) -> Around<Id> {
 }
 
 impl ShortLines {
-    /// The lines shorter than `length` that may become points, the shortest first; none where elements became smaller because something was wrong, and of those of the round before no
-    /// others. `sides` are those of the boundary of a triangle (in the plane: the grain that it is in, twice).
+    /// The lines shorter than `length` that may become points, the shortest first; none where elements became smaller because something was wrong, and then no others than
+    /// those of `around`, from the round before. `sides` are those of the boundary of a triangle (in the plane: the grain that it is in, twice).
     pub(crate) fn new(
         network: &Network,
         around: &Surroundings<'_>,
         sides: impl Fn(BoundaryId) -> [Side; 2],
         length: f64,
         halved: &[Halved],
-        before: Option<&Self>,
     ) -> Self {
         let Surroundings { level, mesh, points, torus, skeleton, parts, .. } = *around;
         let mut found = Self::default();
         let lengths = skeleton.lines.iter().map(|line| line.length(points));
         let mut short: Vec<(f64, u32)> = lengths.zip(0u32..).filter(|(own, _)| *own < length).collect();
-        short.retain(|(_, line)| before.is_none_or(|before| before.has(*line)));
+        short.retain(|(_, line)| halved.is_empty() || around.short.has(*line));
         short.retain(|(_, line)| {
             let line = &skeleton.lines[*line as usize];
             let middle = line.middle(points);
