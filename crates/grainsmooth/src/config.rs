@@ -242,6 +242,9 @@ pub struct Config {
     /// Keep the grains of a periodic box whole, sticking out where they cross its walls (wrap), or cut them at the walls
     /// (box)
     ///
+    /// All grains move by the same distance before the cut where elements of a size are asked for, and where boundaries nearly lie in
+    /// the walls; the summary says how far.
+    ///
     /// Example: --periodic x,y,z --periodic-cut box
     #[arg(long, help_heading = "Domain", value_name = "RULE", value_enum, default_value_t)]
     #[serde(skip_serializing_if = "is_usual")]

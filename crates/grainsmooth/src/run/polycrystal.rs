@@ -41,7 +41,7 @@ pub struct Polycrystal {
     pub mobilities: Option<LawReached>,
     /// What validation found: the angles of the finished network, volumes and how true they are.
     pub validation: Certificate,
-    /// How far all grains were moved before a periodic box was cut, for its planes to meet boundaries steeply; 0 where no elements of a size are asked for.
+    /// How far all grains were moved before a periodic box was cut, for its planes to meet boundaries steeply: where elements of a size are asked for, and where it could not be cut as it was.
     pub moved_for_cut: DVec3,
     /// What became of a wish for elements of a size.
     pub elements: Option<ElementsReached>,
@@ -251,8 +251,10 @@ impl Polycrystal {
         self
     }
 
-    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are. Where elements of a size are asked
-    /// for, all grains move first, so that the walls leave room for good ones.
+    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
+    ///
+    /// Where elements of a size are asked for, all grains move first, so that the walls leave room for good ones; and where the walls
+    /// cannot cut the grains as they lie, as boundaries of lattices lie in them but for some noise.
     ///
     /// # Errors
     /// As of [`Network::cut_at_box`].
@@ -264,11 +266,25 @@ impl Polycrystal {
         let cells = &synthesis.cells;
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
-        if synthesis.config.elements.are_asked() {
-            self.moved_for_cut = self.network.motion_for_steep_cut(&self.points);
-            self.points.iter_mut().for_each(|point| *point += self.moved_for_cut);
-        }
-        let (network, points) = match self.network.cut_at_box(&self.points, synthesis.relaxed.is_flat) {
+        let steep = || self.network.motion_for_steep_cut(&self.points);
+        let cut = |motion: DVec3| {
+            let points: Vec<DVec3> = self.points.iter().map(|point| *point + motion).collect();
+            self.network.cut_at_box(&points, synthesis.relaxed.is_flat)
+        };
+        let is_asked = synthesis.config.elements.are_asked();
+        let mut motion = if is_asked { steep() } else { DVec3::ZERO };
+        let mut given_up = Vec::new();
+        let result = match cut(motion) {
+            Err(error) if !is_asked && error.is_of_planes() => {
+                error.give_up("the cut at the box, grains where they are", &mut given_up);
+                motion = steep();
+                cut(motion)
+            }
+            result => result,
+        };
+        self.attempts.extend(given_up);
+        self.moved_for_cut = motion;
+        let (network, points) = match result {
             Ok(BoxCut { network, points, attempts }) => {
                 self.attempts.extend(attempts);
                 (cells.law.apply(network.with_cell_volumes(volumes))?, points)

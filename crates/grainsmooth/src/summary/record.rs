@@ -61,7 +61,7 @@ pub struct SummaryRecord {
     mobilities: Option<LawReached>,
     /// By what coordinates were multiplied in the end; angles and residual are those before.
     stretch: Option<[f64; 3]>,
-    /// How far all grains were moved before a periodic box was cut; 0 where no elements of a size are asked for.
+    /// How far all grains were moved before a periodic box was cut.
     moved_for_cut: [f64; 3],
     points: usize,
     /// Triangles, in the plane segments.

@@ -66,6 +66,11 @@ impl NetworkError {
         )
     }
 
+    /// Whether the planes of a box cannot cut a network where they are, so that planes elsewhere may.
+    pub fn is_of_planes(&self) -> bool {
+        matches!(self.last(), Self::CutCrosses { .. } | Self::CutInvalid(_))
+    }
+
     /// Whether a shorter relaxation may be without this error.
     pub fn is_of_time(&self) -> bool {
         matches!(
