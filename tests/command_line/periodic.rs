@@ -156,7 +156,7 @@ fn noisy_lattices_with_boundaries_near_the_walls_move_to_be_cut() {
     let place =
         |k: u32| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) + 0.5 + off(k);
     let seeds: Vec<String> = (0..8).map(|k| place(k).to_array().map(|x| x.to_string()).join(" ")).collect();
-    workplace.put("seeds.txt", &seeds.join("\n"));
+    workplace.put("seeds.txt", seeds.join("\n"));
     let said = workplace.run(
         "--seeds-file seeds.txt --box 2 2 2 --periodic y,z --periodic-cut box --relax 0 --regularize 0 -n 1 -o cut.vtp",
     );

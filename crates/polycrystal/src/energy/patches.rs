@@ -125,7 +125,8 @@ impl Patches {
 
     /// What the patches bring to a step where control points are.
     pub(crate) fn terms(&self, points: &[DVec3]) -> Terms {
-        let mut of_place = vec![PlaceTerms::default(); self.patch_of_place.len()];
+        let mut of_place: Vec<PlaceTerms> =
+            rayon::iter::repeat_n(PlaceTerms::default(), self.patch_of_place.len()).collect();
         let mut stiffness = vec![0.0; self.first_edges[self.patches.len()]];
         let of_patches = split(&mut of_place, &self.first_places)
             .into_par_iter()

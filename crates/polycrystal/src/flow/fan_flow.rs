@@ -220,7 +220,8 @@ impl FanFlow<'_> {
                     let sizes = cells.map(|(cell, _)| size.of_volume(volumes[cell.index()]));
                     sizes.fold(1.0, f64::min)
                 };
-                let sizes: Vec<f64> = (0..fans.faces.len()).map(of_fan).collect();
+                let sizes: Vec<f64> =
+                    (0..fans.faces.len()).into_par_iter().with_min_len(CHUNK).map(of_fan).collect();
                 self.of_points(|point| {
                     let smallest = fans.at_point(point).map(|(fan, _)| sizes[fan]).fold(1.0, f64::min);
                     fans.at_point(point).map(mass).sum::<f64>() / (smallest * smallest)

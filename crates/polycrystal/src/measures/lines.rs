@@ -28,11 +28,11 @@ impl<'a> Lines<'a> {
     pub(crate) fn of(complex: &'a Complex<'_>) -> Self {
         let edges: Vec<&[Incidence]> = complex.non_manifold_edges().collect();
         let ends: Vec<[u32; 2]> = edges
-            .iter()
+            .par_iter()
             .map(|at| at[0].ends(complex.surface.elements).map(|end| complex.original(end)))
             .collect();
         let mut halves: Vec<(u32, usize)> =
-            ends.iter().enumerate().flat_map(|(edge, ends)| ends.map(|end| (end, edge))).collect();
+            ends.par_iter().enumerate().flat_map_iter(|(edge, ends)| ends.map(|end| (end, edge))).collect();
         halves.par_sort_unstable();
         let at = |point: u32| {
             let start = halves.partition_point(|(other, _)| *other < point);
@@ -43,8 +43,8 @@ impl<'a> Lines<'a> {
             [(_, a), (_, b)] => complex.boundaries(edges[*a]) == complex.boundaries(edges[*b]),
             _ => false,
         };
-        let mut corners: Vec<u32> = halves.chunk_by(|a, b| a.0 == b.0).map(|at| at[0].0).collect();
-        corners.retain(|point| !is_middle(*point));
+        let corners = halves.par_chunk_by(|a, b| a.0 == b.0).map(|at| at[0].0);
+        let corners: Vec<u32> = corners.filter(|point| !is_middle(*point)).collect();
         let mut is_taken = vec![false; edges.len()];
         let mut lines = Vec::new();
         let mut follow = |start: u32, first: usize, is_closed: bool| {

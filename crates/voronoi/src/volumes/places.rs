@@ -114,7 +114,7 @@ pub fn place_inclusions(
             let goal = fraction() * all;
             let spot = &spots[spots.partition_point(|spot| spot.sum <= goal).min(spots.len() - 1)];
             let center = spot.point(&mut fraction);
-            let overlap = grid.overlap(wrapped(domain, center), radius);
+            let overlap = grid.overlap(wrapped(domain, center), radius, f64::INFINITY);
             if overlap > MOST_OVERLAP {
                 continue;
             }

@@ -54,8 +54,10 @@ pub fn place_spheres(
         let mut best = (f64::INFINITY, DVec3::ZERO);
         for _ in 0..MOST_PLACES {
             let place = random_point(domain, &mut fraction);
-            let overlap =
-                classes.iter().map(|class| class.overlap(place, radius)).fold(f64::NEG_INFINITY, f64::max);
+            let overlap = classes
+                .iter()
+                .map(|class| class.overlap(place, radius, best.0))
+                .fold(f64::NEG_INFINITY, f64::max);
             if overlap < best.0 {
                 best = (overlap, place);
             }
@@ -111,7 +113,7 @@ pub fn place_ellipsoids(
         let mut best = (f64::INFINITY, DVec3::ZERO);
         for _ in 0..MOST_PLACES {
             let place = random_point(domain, &mut fraction);
-            let overlaps = spheres(place).map(|(center, radius)| grid.overlap(center, radius));
+            let overlaps = spheres(place).map(|(center, radius)| grid.overlap(center, radius, best.0));
             let overlap = overlaps.fold(f64::NEG_INFINITY, f64::max);
             if overlap < best.0 {
                 best = (overlap, place);
@@ -199,8 +201,9 @@ impl<'a> SphereGrid<'a> {
         self.blocks[block].push((center, radius));
     }
 
-    /// By how much a sphere overlaps one of these at most, in units of the sum of both radii; negative if it does not.
-    pub(super) fn overlap(&self, center: DVec3, radius: f64) -> f64 {
+    /// By how much a sphere overlaps one of these at most, in units of the sum of both radii; negative if it does not. Where that is as much as
+    /// `enough`, it may be more.
+    pub(super) fn overlap(&self, center: DVec3, radius: f64, enough: f64) -> f64 {
         let coordinates = self.coordinates(center);
         let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| self.near(axis, coordinates[axis]));
         let blocks = along_z.into_iter().flatten().flat_map(|z| {
@@ -208,10 +211,15 @@ impl<'a> SphereGrid<'a> {
             row.flat_map(move |y| along_x.into_iter().flatten().map(move |x| [x, y, z]))
         });
         let spheres = blocks.flat_map(|block| &self.blocks[self.block(block)]);
-        let overlap = |(other, other_radius): &(DVec3, f64)| {
-            1.0 - nearest_image(self.domain, center - other).length() / (radius + other_radius)
-        };
-        spheres.map(overlap).fold(f64::NEG_INFINITY, f64::max)
+        let mut most = f64::NEG_INFINITY;
+        for (other, other_radius) in spheres {
+            let distance = nearest_image(self.domain, center - other).length();
+            most = most.max(1.0 - distance / (radius + other_radius));
+            if most >= enough {
+                break;
+            }
+        }
+        most
     }
 
     /// A coordinate of a block and those beside it, each once.
