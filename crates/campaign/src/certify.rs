@@ -38,7 +38,10 @@ pub fn certify(case: &Case, program: &Path, directory: &Path, out: &[u8]) -> any
     let mut certificate = Certificate::default();
     for name in &case.promise.files {
         let path = directory.join(name);
-        let is_there = fs::metadata(&path).is_ok_and(|found| found.is_dir() || found.len() > 0);
+        let is_there = match fs::read_dir(&path) {
+            Ok(mut files) => files.next().is_some(),
+            Err(_) => fs::metadata(&path).is_ok_and(|found| found.len() > 0),
+        };
         if !is_there {
             certificate.faults.push(format!("{name} is promised and not there, or empty"));
         }
