@@ -158,6 +158,14 @@ fn short_lines_are_kept_where_they_cannot_become_points() {
     workplace.run(&format!("{network} --small-features keep"));
 }
 
+/// Along the sharp edges of thin grains, neighbouring triangles of whatever size were folded: none flipped for that.
+#[test]
+fn thin_grains_whose_boundaries_bend_sharply_are_remeshed() {
+    Workplace::new().run(
+        "--seeds 12 --rng-seed 2 --grain-shapes 3:1:1 --relax 0.05 -n 2 --elements-per-grain 3 -o a.vtp",
+    );
+}
+
 /// Elements once grew from lines of 1e-11 in seventy rings, which took minutes.
 #[test]
 fn lines_too_short_for_elements_are_refused_with_the_remedy() {

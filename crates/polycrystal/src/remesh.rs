@@ -24,6 +24,7 @@ mod size_field;
 mod skeleton;
 mod torus;
 mod tuning;
+mod unfolding;
 mod volumes;
 
 use std::borrow::Cow;

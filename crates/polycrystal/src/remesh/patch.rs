@@ -86,7 +86,7 @@ impl Patch {
 
     /// The edges inside the boundary, the lower end first, in order.
     pub(crate) fn inner_edges(&self) -> Vec<[u32; 2]> {
-        let edges = self.all().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let edges = self.all().flat_map(edges);
         let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 2).map(|same| same[0]).collect()
@@ -181,6 +181,11 @@ impl Patch {
         }
         new.into_iter().for_each(|corners| self.add(corners));
     }
+}
+
+/// The edges of a triangle, as they run around it.
+pub(crate) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
 }
 
 /// The least angle of a triangle, as a cosine that grows as the angle does: minus the cosine of it, from -1 to -1/2. -1 where two corners are one.

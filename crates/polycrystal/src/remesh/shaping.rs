@@ -7,13 +7,13 @@ use cancellation::check_cancelled;
 use glam::DVec3;
 
 use crate::remesh::outline::Outlined;
-use crate::remesh::patch::{Patch, least_angle};
+use crate::remesh::patch::{Patch, edges, least_angle};
 use crate::remesh::reference::{Foot, Reference};
 use crate::remesh::torus::Moved;
 use crate::remesh::tuning::RemeshTuning;
 
 /// By how much the cosine of the least angle must be better for a flip, or a measure for a motion: so both end.
-const BETTER: f64 = 1e-4;
+pub(super) const BETTER: f64 = 1e-4;
 
 /// Sweeps over all edges within a round, each of which ends earlier where nothing happens.
 const SWEEPS: usize = 4;
@@ -36,7 +36,7 @@ pub(crate) struct Shaping<'a> {
     pub(crate) patch: Patch,
     reference: Reference,
     feet: Vec<Foot>,
-    tuning: &'a RemeshTuning,
+    pub(super) tuning: &'a RemeshTuning,
     /// Whether edges may come to be between points of the outline.
     joins_outline: bool,
 }
@@ -59,6 +59,7 @@ impl<'a> Shaping<'a> {
             }
         }
         self.widen();
+        self.unfold();
     }
 
     /// Halves edges between points of the outline, which lie at other boundaries too; no other such edges come to be.
@@ -70,6 +71,7 @@ impl<'a> Shaping<'a> {
         self.flip();
         self.relax();
         self.widen();
+        self.unfold();
     }
 
     /// Gives a lone triangle a point of its own.
@@ -170,7 +172,11 @@ impl<'a> Shaping<'a> {
     }
 
     /// Moves the first end of an edge into the other, or both inside into the middle, if `is_right` says so of the worst angle before and the triangles after.
-    fn collapse(&mut self, ends: [u32; 2], is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool) -> bool {
+    pub(super) fn collapse(
+        &mut self,
+        ends: [u32; 2],
+        is_right: impl Fn(&Self, f64, &[[u32; 3]]) -> bool,
+    ) -> bool {
         let [from, to] = ends;
         if !self.patch.pinched(ends).is_empty() {
             return false;
@@ -213,15 +219,18 @@ impl<'a> Shaping<'a> {
     /// How triangles lie to the smooth surface: the least cosine of the angle between.
     fn agreement(&self, triangles: &[[u32; 3]]) -> f64 {
         let cosine = |corners: &[u32; 3]| {
-            let [a, b, c] = self.patch.places(*corners);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
             let smooth: DVec3 = corners.iter().map(|corner| self.feet[*corner as usize].normal).sum();
-            normal.dot(smooth.normalize_or_zero())
+            self.normal(*corners).dot(smooth.normalize_or_zero())
         };
         triangles.iter().map(cosine).fold(1.0, f64::min)
     }
 
-    fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
+    pub(super) fn normal(&self, corners: [u32; 3]) -> DVec3 {
+        let [a, b, c] = self.patch.places(corners);
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    pub(super) fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
         triangles.iter().map(|corners| least_angle(self.patch.places(*corners))).fold(0.0, f64::min)
     }
 
@@ -242,6 +251,15 @@ impl<'a> Shaping<'a> {
     }
 
     fn flip_edge(&mut self, edge: [u32; 2]) -> bool {
+        self.flip_if(edge, |shaping, old, new| shaping.worst_angle(new) > shaping.worst_angle(old) + BETTER)
+    }
+
+    /// Flips an edge, if `is_right` says so of the triangles before and after.
+    pub(super) fn flip_if(
+        &mut self,
+        edge: [u32; 2],
+        is_right: impl Fn(&Self, &[[u32; 3]], &[[u32; 3]]) -> bool,
+    ) -> bool {
         let Some(new) = self.patch.after_flipping(edge) else { return false };
         let [top, bottom] = [new[0][0], new[0][2]];
         if !self.may_join([top, bottom]) {
@@ -249,8 +267,8 @@ impl<'a> Shaping<'a> {
         }
         let old: Vec<[u32; 3]> =
             self.patch.at_edge(edge).into_iter().map(|triangle| self.patch.corners(triangle)).collect();
-        // Most edges are good as they are: angles are asked for first.
-        let is_good = self.worst_angle(&new) > self.worst_angle(&old) + BETTER
+        // Most edges are good as they are: that is asked for first.
+        let is_good = is_right(self, &old, &new)
             && self.agreement(&new) >= self.agreement(&old).min(self.tuning.least_cosine);
         if is_good {
             self.patch.flip(edge, new);
@@ -280,7 +298,7 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    fn star(&self, point: u32) -> Vec<[u32; 3]> {
+    pub(super) fn star(&self, point: u32) -> Vec<[u32; 3]> {
         self.patch.star(point).iter().map(|triangle| self.patch.corners(*triangle)).collect()
     }
 
@@ -318,7 +336,8 @@ impl<'a> Shaping<'a> {
                 }
                 let star = self.star(point);
                 if self.worst_angle(&star) < good {
-                    has_moved |= self.search(point, &star) || self.collapse_to_widen(point, BETTER);
+                    has_moved |= self.search(point, &star, |shaping| shaping.worst_angle(&star))
+                        || self.collapse_to_widen(point, BETTER);
                 }
             }
             self.flip();
@@ -328,12 +347,12 @@ impl<'a> Shaping<'a> {
         }
     }
 
-    /// Moves a point to where the least angle of the triangles around it is larger; whether there is such a place nearby.
-    fn search(&mut self, point: u32, star: &[[u32; 3]]) -> bool {
+    /// Moves a point to where a measure of the triangles around it is larger; whether there is such a place nearby.
+    pub(super) fn search(&mut self, point: u32, star: &[[u32; 3]], measure: impl Fn(&Self) -> f64) -> bool {
         let Foot { normal, size, .. } = self.feet[point as usize];
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
-        let before = self.worst_angle(star);
+        let before = measure(self);
         for step in SEARCH_STEPS {
             let place = self.patch.place(point);
             let mut best = None;
@@ -342,8 +361,8 @@ impl<'a> Shaping<'a> {
                 let foot = self.reference.foot(place + by, self.feet[point as usize].triangle);
                 let old = (self.patch.place(point), self.feet[point as usize]);
                 let wanted = best.map_or(before, |(found, _)| found);
-                if self.move_if(point, foot, star, |shaping| shaping.worst_angle(star) > wanted + BETTER) {
-                    best = Some((self.worst_angle(star), foot));
+                if self.move_if(point, foot, star, |shaping| measure(shaping) > wanted + BETTER) {
+                    best = Some((measure(self), foot));
                     self.patch.points[point as usize] = old.0;
                     self.feet[point as usize] = old.1;
                 }
@@ -355,10 +374,6 @@ impl<'a> Shaping<'a> {
         }
         false
     }
-}
-
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }
 
 impl Outlined {
