@@ -166,6 +166,17 @@ fn thin_grains_whose_boundaries_bend_sharply_are_remeshed() {
     );
 }
 
+/// What rounding leaves of the sum of all volumes was shared out evenly: more than a small grain has.
+#[test]
+fn grains_a_thousandth_as_wide_keep_their_volumes() {
+    let workplace = Workplace::new();
+    let place = |k: u32| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract();
+    let small = (41..=52).map(|k| place(k) * 1e-3 + 0.5);
+    let seeds = small.chain((53..=60).map(place)).map(|seed| format!("{} {} {}", seed.x, seed.y, seed.z));
+    workplace.put("seeds.txt", seeds.collect::<Vec<_>>().join("\n"));
+    workplace.run("--seeds-file seeds.txt --relax 0.1 -n 2 --elements-per-grain 1.5 -o a.vtp");
+}
+
 /// Elements once grew from lines of 1e-11 in seventy rings, which took minutes.
 #[test]
 fn lines_too_short_for_elements_are_refused_with_the_remedy() {

@@ -48,10 +48,9 @@ pub(crate) fn restore_by<Points>(
         }
         least = error;
         if is_sum_fixed {
-            // What rounding leaves of the sum has no answer. No motion changes what has vanished.
-            let left: Vec<usize> = (0..wanted.len()).filter(|grain| wanted[*grain] > 0.0).collect();
-            let rest = left.iter().map(|grain| missing[*grain]).sum::<f64>() / left.len() as f64;
-            left.iter().for_each(|grain| missing[*grain] -= rest);
+            // What rounding leaves of the sum has no answer. Each grain takes of it by its volume: an even share may be more than a small one has.
+            let rest = missing.iter().sum::<f64>() / wanted.iter().sum::<f64>();
+            missing.iter_mut().zip(wanted).for_each(|(missing, wanted)| *missing -= rest * wanted);
         }
         let motions = least_motion(&moving(points), &missing);
         move_by(points, motions);
