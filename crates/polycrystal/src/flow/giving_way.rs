@@ -105,21 +105,21 @@ impl<'a> GivingWay<'a> {
         broken.into_iter().for_each(|unknown| *self.times.entry(unknown).or_default() += 1);
         let rings = self.rings();
         let giving_way: Vec<u32> = rings.keys().copied().collect();
-        let neighbors: Vec<Vec<(u32, f64)>> =
+        let mut neighbors: Vec<Vec<(u32, f64)>> =
             giving_way.iter().map(|unknown| (self.neighbors)(*unknown)).collect();
         let longest = neighbors.iter().flatten().map(|(_, distance)| *distance).fold(0.0, f64::max);
+        neighbors.iter_mut().flatten().for_each(|(_, distance)| *distance /= longest);
         let is_deep = |unknown: &u32| rings.get(unknown).is_some_and(|ring| *ring > SMOOTHED_RINGS);
         let mut tied = DisjointSets::new(giving_way.len());
         for ((place, unknown), neighbors) in (0u32..).zip(&giving_way).zip(&neighbors) {
             for (other, distance) in neighbors {
-                let moves_as_one =
-                    *distance < LEAST_DISTANCE * longest || (is_deep(unknown) && is_deep(other));
-                if let (true, Ok(other)) = (moves_as_one, giving_way.binary_search(other)) {
+                let moves_as_one = *distance < LEAST_DISTANCE || (is_deep(unknown) && is_deep(other));
+                if moves_as_one && let Ok(other) = giving_way.binary_search(other) {
                     tied.join(place, id(other));
                 }
             }
         }
-        self.carry(moves, &giving_way, (&neighbors, longest), tied.numbers());
+        self.carry(moves, &giving_way, &neighbors, tied.numbers());
     }
 
     /// How many rings of neighbours reach an unknown, of those that any do.
@@ -137,16 +137,16 @@ impl<'a> GivingWay<'a> {
         rings
     }
 
-    /// Gives some unknowns, sorted, in groups by number, motions such that each group has the weighted mean of those of its neighbours, none farther than the longest
-    /// distance.
+    /// Gives some unknowns, sorted, in groups by number, motions such that each group has the weighted mean of those of its neighbours. Distances to these are in units of the
+    /// longest.
     fn carry(
         &self,
         moves: &mut [DVec3],
         unknowns: &[u32],
-        (neighbors, longest): (&[Vec<(u32, f64)>], f64),
+        neighbors: &[Vec<(u32, f64)>],
         (numbers, count): (Vec<u32>, u32),
     ) {
-        let weight = |distance: f64| 1.0 / (distance / longest).max(LEAST_DISTANCE);
+        let weight = |distance: f64| 1.0 / distance.max(LEAST_DISTANCE);
         let mut groups = vec![Group::default(); count as usize];
         for ((unknown, number), neighbors) in unknowns.iter().zip(&numbers).zip(neighbors) {
             let group = &mut groups[*number as usize];

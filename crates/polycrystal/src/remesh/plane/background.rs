@@ -14,6 +14,7 @@ use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::{Meeting, NodeType};
 use crate::mesh::wall_set::WallSet;
+use crate::remesh::patch::edges;
 use crate::{BoundaryId, Level, Mesh, Network, NetworkError, Side};
 
 /// The triangles between the lines of a level, each labelled with its grain, and their points: first those of the lines, then those of a lattice of the given spacing that
@@ -37,7 +38,6 @@ pub(super) fn filled(
         let [left, right] = sides[boundary.index()];
         sides_of.extend([([*from, *to], left), ([*to, *from], right)]);
     }
-    let edges = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
     let mut across: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     let mut pieces = DisjointSets::new(triangles.len());
     for (triangle, corners) in (0u32..).zip(&triangles) {
