@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use crate::complex::ring::LARGEST_FOLD;
 use crate::energy::fans::{FanTerms, Fans, is_bent};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
@@ -271,7 +272,7 @@ impl FanFlow<'_> {
 
     /// The points of triangles that a step has turned too far, or bent too far and more than they were; given the normals before and after.
     fn broken(&self, before: &[DVec3], after: &[DVec3]) -> Vec<[u32; 3]> {
-        let Tuning { largest_turn, largest_bend, .. } = *self.tuning;
+        let largest_turn = self.tuning.largest_turn;
         let cosine = |normals: &[DVec3], [a, b]: [usize; 2]| {
             normals[a].normalize_or_zero().dot(normals[b].normalize_or_zero())
         };
@@ -281,7 +282,7 @@ impl FanFlow<'_> {
             turn.is_nan() || turn < 0.0
         };
         let is_bent = |pair: [usize; 2]| {
-            is_bent(after[pair[0]], after[pair[1]], largest_bend)
+            is_bent(after[pair[0]], after[pair[1]], LARGEST_FOLD)
                 && cosine(after, pair) < cosine(before, pair) - SLIGHT_BEND
         };
         let of_fan = |fan: usize| {

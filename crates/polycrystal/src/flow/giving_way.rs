@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::mesh::disjoint_sets::DisjointSets;
+use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::{Freedom, NetworkError};
@@ -161,25 +163,9 @@ impl<'a> GivingWay<'a> {
                 group.weight += weight;
             }
         }
-        let at = |vector: &[f64], group: usize| DVec3::from_slice(&vector[3 * group..]);
-        let right_side: Vec<f64> =
-            groups.iter().flat_map(|group| group.freedom.project(group.pull).to_array()).collect();
-        let apply = |vector: &[f64]| -> Vec<f64> {
-            let image = |(number, Group { freedom, row, weight, .. }): (usize, &Group)| {
-                let pull: DVec3 = row.iter().map(|(other, weight)| at(vector, *other) * *weight).sum();
-                freedom.project(at(vector, number) * *weight - pull).to_array()
-            };
-            groups.iter().enumerate().flat_map(image).collect()
-        };
-        let precondition = |residual: &[f64]| -> Vec<f64> {
-            // What nothing is beside stays.
-            let over_weight =
-                |(place, left): (usize, &f64)| left / groups[place / 3].weight.max(f64::MIN_POSITIVE);
-            residual.iter().enumerate().map(over_weight).collect()
-        };
-        let smoothed = solve(apply, precondition, &right_side, &LIMITS);
+        let means = means_by_part(&groups);
         for (unknown, number) in unknowns.iter().zip(&numbers) {
-            moves[*unknown as usize] = at(&smoothed, *number as usize);
+            moves[*unknown as usize] = means[*number as usize];
         }
     }
 }
@@ -200,6 +186,54 @@ fn until_unbroken<P>(
         change(moves, places);
     }
     Err(NetworkError::Folded { count, grains: Vec::new() })
+}
+
+/// The weighted mean of the motions around each group. Places that are apart are solved each for itself: together they would take as many iterations as
+/// the worst of them.
+fn means_by_part(groups: &[Group]) -> Vec<DVec3> {
+    let mut connected = DisjointSets::new(groups.len());
+    for (number, group) in (0u32..).zip(groups) {
+        group.row.iter().for_each(|(other, _)| connected.join(number, id(*other)));
+    }
+    let (parts, part_count) = connected.numbers();
+    let parts = Grouped::new(part_count as usize, parts.iter().map(|part| *part as usize).zip(0usize..));
+    let of_part = |part: usize| {
+        let members = parts.of(part);
+        let place = |group: usize| members.binary_search(&group).expect("rows stay within their part");
+        let alone = |group: &usize| {
+            let Group { freedom, pull, weight, ref row } = groups[*group];
+            Group { freedom, pull, weight, row: row.iter().map(|(other, by)| (place(*other), *by)).collect() }
+        };
+        means(&members.iter().map(alone).collect::<Vec<_>>())
+    };
+    let found: Vec<Vec<DVec3>> = (0..parts.count()).into_par_iter().map(of_part).collect();
+    let mut means = vec![DVec3::ZERO; groups.len()];
+    for (part, found) in found.into_iter().enumerate() {
+        parts.of(part).iter().zip(found).for_each(|(group, mean)| means[*group] = mean);
+    }
+    means
+}
+
+/// The same of groups that hang together.
+fn means(groups: &[Group]) -> Vec<DVec3> {
+    let at = |vector: &[f64], group: usize| DVec3::from_slice(&vector[3 * group..]);
+    let right_side: Vec<f64> =
+        groups.iter().flat_map(|group| group.freedom.project(group.pull).to_array()).collect();
+    let apply = |vector: &[f64]| -> Vec<f64> {
+        let image = |(number, Group { freedom, row, weight, .. }): (usize, &Group)| {
+            let pull: DVec3 = row.iter().map(|(other, weight)| at(vector, *other) * *weight).sum();
+            freedom.project(at(vector, number) * *weight - pull).to_array()
+        };
+        groups.iter().enumerate().flat_map(image).collect()
+    };
+    let precondition = |residual: &[f64]| -> Vec<f64> {
+        // What nothing is beside stays.
+        let over_weight =
+            |(place, left): (usize, &f64)| left / groups[place / 3].weight.max(f64::MIN_POSITIVE);
+        residual.iter().enumerate().map(over_weight).collect()
+    };
+    let means = solve(apply, precondition, &right_side, &LIMITS);
+    (0..groups.len()).map(|group| at(&means, group)).collect()
 }
 
 /// Unknowns that move as one.

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 use crate::BoundaryId;
 use crate::measures::complex::Complex;
 use crate::mesh::adjacency::Incidence;
+use crate::mesh::grouped::Grouped;
 
 /// The curves along which the same boundaries meet, triple lines and edges of the domain, and the points where they end.
 pub(crate) struct Lines<'a> {
@@ -31,20 +32,16 @@ impl<'a> Lines<'a> {
             .par_iter()
             .map(|at| at[0].ends(complex.surface.elements).map(|end| complex.original(end)))
             .collect();
-        let mut halves: Vec<(u32, usize)> =
-            ends.par_iter().enumerate().flat_map_iter(|(edge, ends)| ends.map(|end| (end, edge))).collect();
-        halves.par_sort_unstable();
-        let at = |point: u32| {
-            let start = halves.partition_point(|(other, _)| *other < point);
-            let count = halves[start..].partition_point(|(other, _)| *other == point);
-            &halves[start..start + count]
+        let point_count = ends.iter().flatten().max().map_or(0, |last| *last as usize + 1);
+        let edges_at = ends.iter().enumerate().flat_map(|(edge, ends)| ends.map(|end| (end as usize, edge)));
+        let edges_at = Grouped::new(point_count, edges_at);
+        let is_corner = |point: usize| match edges_at.of(point) {
+            [] => false,
+            [a, b] => complex.boundaries(edges[*a]) != complex.boundaries(edges[*b]),
+            _ => true,
         };
-        let is_middle = |point: u32| match at(point) {
-            [(_, a), (_, b)] => complex.boundaries(edges[*a]) == complex.boundaries(edges[*b]),
-            _ => false,
-        };
-        let corners = halves.par_chunk_by(|a, b| a.0 == b.0).map(|at| at[0].0);
-        let corners: Vec<u32> = corners.filter(|point| !is_middle(*point)).collect();
+        let is_corner: Vec<bool> = (0..point_count).into_par_iter().map(is_corner).collect();
+        let corners: Vec<u32> = (0u32..).zip(&is_corner).filter(|(_, is)| **is).map(|(at, _)| at).collect();
         let mut is_taken = vec![false; edges.len()];
         let mut lines = Vec::new();
         let mut follow = |start: u32, first: usize, is_closed: bool| {
@@ -60,16 +57,16 @@ impl<'a> Lines<'a> {
                 last = if a == last { b } else { a };
                 line.edges.push(edges[edge]);
                 line.points.push(last);
-                let next = at(last).iter().find(|(_, edge)| !is_taken[*edge]);
+                let next = edges_at.of(last as usize).iter().find(|edge| !is_taken[**edge]);
                 match next {
-                    Some((_, next)) if is_middle(last) => edge = *next,
+                    Some(next) if !is_corner[last as usize] => edge = *next,
                     _ => break,
                 }
             }
             lines.push(line);
         };
         for corner in &corners {
-            at(*corner).iter().for_each(|(_, edge)| follow(*corner, *edge, false));
+            edges_at.of(*corner as usize).iter().for_each(|edge| follow(*corner, *edge, false));
         }
         // What no corner leads to closes on itself.
         for (edge, ends) in ends.iter().enumerate() {

@@ -7,6 +7,7 @@ use voronoi::Dimension;
 
 use super::{Flow, displaced};
 use crate::check::folds::is_folded;
+use crate::complex::ring::LARGEST_FOLD;
 use crate::flow::assembly::gradient;
 use crate::flow::boundary_flow::level_elements::LevelElements;
 use crate::flow::giving_way::GivingWay;
@@ -122,7 +123,7 @@ impl Flow<'_> {
     pub(super) fn broken_elements(&self, before: &[DVec3], after: &[DVec3]) -> Vec<u32> {
         // Growth is asked for step by step: where a line shrinks it bends, and what is held there would not grow as it should.
         let largest_bend = match self.volumes {
-            Volumes::Kept => self.tuning.largest_bend,
+            Volumes::Kept => LARGEST_FOLD,
             Volumes::Free => -1.0,
         };
         let LevelElements { level, boundaries, neighbors } = &self.elements;
