@@ -19,6 +19,7 @@ use crate::flow::balance::Balance;
 use crate::flow::recipe::{Certified, NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Moving, RelaxationStep, Relaxed};
 use crate::flow::tuning::Tuning;
+use crate::network::face_mesh::FEWEST_SEGMENTS;
 use crate::{Mesh, Network, NetworkError, Side, Volumes, measure_network};
 use arc_network::ArcNetwork;
 use chordal_arc::point_on_arc;
@@ -31,9 +32,6 @@ const CHORDS: u32 = 32;
 /// Largest angle by which a boundary turns from one segment to the next, in degrees. Segments at a triple point are off the
 /// boundaries' own directions by half of that.
 const LARGEST_BEND: f64 = 0.25;
-
-/// Fewest segments of a boundary on the control mesh, as elsewhere.
-const FEWEST_SEGMENTS: u32 = 2;
 
 /// Most steps while the topology changes, and most after that. Some fifty are usual.
 const STEPS: usize = 2000;

@@ -1,4 +1,4 @@
-mod build;
+pub(crate) mod build;
 pub(crate) mod coarsening;
 pub(crate) mod control_mesh;
 mod corners;

@@ -1,5 +1,7 @@
 //! The tuned numbers of relaxation in space.
 
+use crate::network::build::FINEST_MOVED;
+
 /// What relaxation in space is tuned by. Lengths are in units of the feature size (the mean grain size, or a box's shorter side),
 /// times in units of the mean grain size squared.
 ///
@@ -77,7 +79,7 @@ impl Default for Tuning {
             largest_turn: 0.5,
             widening: 10.0,
             finest_moved: 1,
-            finest_balanced: 2,
+            finest_balanced: FINEST_MOVED,
             merged_length: 0.06,
         }
     }

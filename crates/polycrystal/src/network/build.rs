@@ -270,8 +270,8 @@ impl Network {
     }
 }
 
-/// The finest level whose points relaxation may move by themselves.
-const FINEST_MOVED: usize = 2;
+/// The finest level whose points relaxation may move by themselves: it has forty inside a face.
+pub(crate) const FINEST_MOVED: usize = 2;
 
 /// The finest level that is held in memory of so many: points of no finer one move by themselves, and the last follows from the one before. In
 /// the plane, where levels are small, all.

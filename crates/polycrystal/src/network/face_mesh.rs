@@ -11,7 +11,7 @@ use crate::mesh::id::id;
 use crate::network::fan::{Fan, outline_center};
 
 /// Fewest segments of a triple line: one middle, so that every line can curve.
-const FEWEST_SEGMENTS: u32 = 2;
+pub(crate) const FEWEST_SEGMENTS: u32 = 2;
 
 /// Length, in units of the mean size of cells, below which a sparse fan leaves a triple line whole: halves would make needles of
 /// the triangles from there to the centres of its boundaries. Levels of subdivision divide and curve it all the same.
