@@ -4,13 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
+use crate::solver::conjugate_gradients::SOLVED;
 use crate::{Freedom, GrainId};
 
 /// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
 pub(crate) const CHUNK: usize = 4096;
-
-/// Error of the pressures that give the volumes.
-const TIGHT: f64 = 1e-6;
 
 /// Unknown displacements, how much each resists, and how volumes follow.
 pub(crate) struct PressureResponse {
@@ -41,7 +39,7 @@ impl PressureResponse {
         let Some((constraint, compliance)) = &self.constraint else {
             return vec![DVec3::ZERO; self.mobility.len()];
         };
-        let pressures = compliance.pressures(changes, TIGHT);
+        let pressures = compliance.pressures(changes, SOLVED);
         let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
         let mut moves: Vec<DVec3> =
             (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();

@@ -9,10 +9,6 @@ use crate::solver::multigrid::Multigrid;
 use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId};
 
-/// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
-/// change its volume there is no solution, and going on would only blow up what rounding leaves.
-const ITERATIONS: usize = 2000;
-
 /// Length of a sum of gradients, as a share of the sum of all lengths at a group, that is rounding.
 const CANCELLED: f64 = 1e-13;
 
@@ -150,7 +146,7 @@ impl Compliance {
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         let balanced = self.balanced(changes);
-        let limits = Limits { tolerance, steps: ITERATIONS.min(2 * changes.len() + 20) };
+        let limits = Limits::of(changes.len(), tolerance);
         let precondition = |residual: &[f64]| self.grids.precondition(residual);
         solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
     }

@@ -10,6 +10,7 @@ use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
 use crate::Freedom;
+use crate::solver::conjugate_gradients::{Limits, SOLVED, solve};
 
 /// Iterations for the lengths at the end of a step.
 const LENGTHS: usize = 2;
@@ -19,10 +20,6 @@ const LEAST_LENGTH: f64 = 0.3;
 
 /// Tension, in units of the mean, that keeps points apart where there is none.
 const LEAST_TENSION: f64 = 1e-6;
-
-/// Share of its first residual at which the system of vertices is solved, and most iterations for that.
-const TOLERANCE: f64 = 1e-6;
-const ITERATIONS: usize = 1000;
 
 /// Curves that one task works on.
 const CURVES_PER_TASK: usize = 256;
@@ -107,61 +104,39 @@ impl CurveNetwork {
     fn solve(&self, reduced: &[Reduced]) -> Vec<DVec2> {
         let count = self.freedoms.len();
         let mut diagonal = vec![DMat2::ZERO; count];
-        let mut residual = vec![DVec2::ZERO; count];
+        let mut forces = vec![DVec2::ZERO; count];
         for (curve, reduced) in self.curves.iter().zip(reduced) {
             for (end, (vertex, _)) in curve.ends.iter().enumerate() {
                 diagonal[*vertex] += reduced.diagonal[end];
-                residual[*vertex] += reduced.forces[end];
+                forces[*vertex] += reduced.forces[end];
             }
         }
         let inverse: Vec<DMat2> = diagonal
             .iter()
             .map(|block| if block.determinant() > 0.0 { block.inverse() } else { DMat2::ZERO })
             .collect();
-        let free = |vertex: usize, by: DVec2| self.freedoms[vertex].project(by.extend(0.0)).truncate();
-        let precondition = |residual: &[DVec2]| -> Vec<DVec2> {
-            residual.iter().enumerate().map(|(at, by)| free(at, inverse[at] * *by)).collect()
+        let at = |values: &[f64], vertex: usize| DVec2::from_slice(&values[2 * vertex..]);
+        let free = |vectors: Vec<DVec2>| -> Vec<f64> {
+            let free =
+                |(by, freedom): (DVec2, &Freedom)| freedom.project(by.extend(0.0)).truncate().to_array();
+            vectors.into_iter().zip(&self.freedoms).flat_map(free).collect()
         };
-        let apply = |direction: &[DVec2]| -> Vec<DVec2> {
-            let mut image: Vec<DVec2> =
-                direction.iter().zip(&diagonal).map(|(by, block)| *block * *by).collect();
+        let precondition = |residual: &[f64]| {
+            free(inverse.iter().enumerate().map(|(vertex, block)| *block * at(residual, vertex)).collect())
+        };
+        let apply = |direction: &[f64]| {
+            let own = diagonal.iter().enumerate();
+            let mut image: Vec<DVec2> = own.map(|(vertex, block)| *block * at(direction, vertex)).collect();
             for (curve, reduced) in self.curves.iter().zip(reduced) {
                 let [start, end] = curve.ends.map(|(vertex, _)| vertex);
-                image[end] += reduced.coupling * direction[start];
-                image[start] += reduced.coupling.transpose() * direction[end];
+                image[end] += reduced.coupling * at(direction, start);
+                image[start] += reduced.coupling.transpose() * at(direction, end);
             }
-            image.iter().enumerate().map(|(at, by)| free(at, *by)).collect()
+            free(image)
         };
-        residual.iter_mut().enumerate().for_each(|(at, by)| *by = free(at, *by));
-        let mut moves = vec![DVec2::ZERO; count];
-        let mut direction = precondition(&residual);
-        let mut size = dot(&residual, &direction);
-        let enough = size * TOLERANCE * TOLERANCE;
-        for _ in 0..ITERATIONS {
-            if size <= enough || size <= 0.0 {
-                break;
-            }
-            let image = apply(&direction);
-            let step = size / dot(&direction, &image);
-            for at in 0..count {
-                moves[at] += step * direction[at];
-                residual[at] -= step * image[at];
-            }
-            let projected = precondition(&residual);
-            let next = dot(&residual, &projected);
-            let share = next / size;
-            direction
-                .iter_mut()
-                .zip(projected)
-                .for_each(|(direction, by)| *direction = by + share * *direction);
-            size = next;
-        }
-        moves
+        let moves = solve(apply, precondition, &free(forces), &Limits::of(2 * count, SOLVED));
+        moves.chunks(2).map(DVec2::from_slice).collect()
     }
-}
-
-fn dot(a: &[DVec2], b: &[DVec2]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }
 
 /// The system of a curve in terms of its ends: its points between them are eliminated.

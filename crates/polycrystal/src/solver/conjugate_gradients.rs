@@ -9,6 +9,17 @@ pub(crate) struct Limits {
     pub(crate) steps: usize,
 }
 
+/// Residual that is small enough, as a share of its first value, where what is left is asked for once more.
+pub(crate) const SOLVED: f64 = 1e-6;
+
+impl Limits {
+    /// Those of so many unknowns. Without rounding as many steps are enough; where there is no solution, more of them would only blow up what rounding
+    /// leaves.
+    pub(crate) fn of(unknowns: usize, tolerance: f64) -> Self {
+        Self { tolerance, steps: 2 * unknowns + 20 }
+    }
+}
+
 /// Solves `A x = b` for a symmetric positive (semi)definite A and consistent b, starting from zero.
 ///
 /// `apply` multiplies a vector with A, `precondition` with a symmetric, positive (semi)definite matrix that is much like

@@ -4,10 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::solver::conjugate_gradients::{Limits, solve};
-
-/// Residual of the multipliers, as a share of what is asked for.
-const SOLVED: f64 = 1e-6;
+use crate::solver::conjugate_gradients::{Limits, SOLVED, solve};
 
 /// A point: its weight, the square of its motion counting so much, and how each sum, by number, grows as it moves.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,8 +35,7 @@ pub(crate) fn least_motion(points: &[MovingPoint], asked: &[f64]) -> Vec<DVec3> 
         let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
         residual.iter().zip(&diagonal).map(entry).collect()
     };
-    let limits = Limits { tolerance: SOLVED, steps: 2 * asked.len() + 20 };
-    let multipliers = solve(apply, precondition, asked, &limits);
+    let multipliers = solve(apply, precondition, asked, &Limits::of(asked.len(), SOLVED));
     let motion = |point: &MovingPoint| {
         let along = point.gradients.iter();
         let sum: DVec3 = along.map(|(sum, gradient)| *gradient * multipliers[*sum as usize]).sum();

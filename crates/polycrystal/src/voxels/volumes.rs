@@ -8,15 +8,12 @@ use rayon::prelude::*;
 
 use crate::mesh::id::id;
 use crate::mesh::volume::largest_relative_error;
-use crate::solver::conjugate_gradients::{Limits, solve};
+use crate::solver::conjugate_gradients::{Limits, SOLVED, solve};
 use crate::voxels::bending::Boxes;
 use crate::voxels::elements::CutFaces;
 use crate::voxels::tuning::VoxelTuning;
 use crate::voxels::volume_slopes::VolumeSlopes;
 use crate::{GrainId, Side};
-
-/// Residual of the multipliers, as a share of what volumes lack.
-const SOLVED: f64 = 1e-6;
 
 /// What volumes may lack in the end, as a share of each.
 const TOLERANCE: f64 = 1e-13;
@@ -152,5 +149,5 @@ fn multipliers(matrix: &[BTreeMap<u32, f64>], missing: &[f64]) -> Vec<f64> {
         let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
         residual.iter().zip(&diagonal).map(entry).collect()
     };
-    solve(apply, precondition, missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
+    solve(apply, precondition, missing, &Limits::of(missing.len(), SOLVED))
 }
