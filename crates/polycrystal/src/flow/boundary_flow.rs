@@ -31,7 +31,6 @@ use crate::{GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
 pub(crate) use growth::{Grown, change_of_step};
 use level_elements::{LevelElements, LevelSectors};
-pub(crate) use step::SLIGHT_BEND;
 use step::Taken;
 pub(crate) use volumes::has_kept_volumes;
 

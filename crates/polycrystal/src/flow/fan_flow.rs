@@ -9,14 +9,13 @@ use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::FREE_TOLERANCE;
-use crate::flow::boundary_flow::SLIGHT_BEND;
 use crate::flow::giving_way::GivingWay;
 use crate::flow::growth_law::GrowthLaw;
 use crate::flow::pressure_response::CHUNK;
 use crate::flow::system::{Parts, System, softened};
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
-use crate::mesh::rounding::last_place;
+use crate::mesh::rounding::{self, last_place};
 use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId, NetworkError};
 
@@ -283,7 +282,7 @@ impl FanFlow<'_> {
         };
         let is_bent = |pair: [usize; 2]| {
             is_bent(after[pair[0]], after[pair[1]], LARGEST_FOLD)
-                && cosine(after, pair) < cosine(before, pair) - SLIGHT_BEND
+                && cosine(after, pair) < cosine(before, pair) - rounding::OF_COSINES
         };
         let of_fan = |fan: usize| {
             let slots = self.fans.slots_of(fan);

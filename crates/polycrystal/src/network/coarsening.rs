@@ -3,6 +3,7 @@
 use glam::DVec3;
 use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
+use crate::mesh::rounding;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::network::corners::{edges, is_cycle, seen_from, translation_of, with_corner_moved};
 
@@ -18,9 +19,6 @@ const LEAST_GAIN: f64 = 1e-3;
 /// Cosines of angles between the normals of two triangles at an edge that are not made, nor made less: inside a boundary folds by more than 72 degrees, between
 /// different ones angles below 26.
 const LEAST_COSINES: [f64; 2] = [0.3, -0.9];
-
-/// By how much cosines may differ for rounding alone. Triangles with an edge of 1e-2 of others moved them by 1e-13.
-const ROUNDING: f64 = 1e-9;
 
 /// Triangles of less height, in parts of the length below which edges collapse, may turn as they will.
 const NARROW: f64 = 0.15;
@@ -278,7 +276,7 @@ impl Coarsening<'_> {
         if !is_above(LEAST_COSINES) {
             let new = self.set_all(old.clone());
             let before = self.sharpest(&triangles);
-            let least = [0, 1].map(|place| before[place].min(LEAST_COSINES[place]) - ROUNDING);
+            let least = [0, 1].map(|place| before[place].min(LEAST_COSINES[place]) - rounding::OF_COSINES);
             if !is_above(least) {
                 return false;
             }

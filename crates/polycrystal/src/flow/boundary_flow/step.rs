@@ -15,11 +15,9 @@ use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::tied_points::Numbering;
 use crate::mesh::id::id;
+use crate::mesh::rounding;
 use crate::mesh::volume::volumes_of_grains;
 use crate::{Freedom, NetworkError, Volumes};
-
-/// Change of the cosine of a bend that counts as none.
-pub(crate) const SLIGHT_BEND: f64 = 1e-9;
 
 /// What a step found.
 pub(super) struct Taken {
@@ -145,7 +143,7 @@ impl Flow<'_> {
             };
             let is_bent = |pair: &[u32; 2]| {
                 is_folded(of_pair(&after, *pair), largest_bend)
-                    && cosine(of_pair(&after, *pair)) < cosine(of_pair(&before, *pair)) - SLIGHT_BEND
+                    && cosine(of_pair(&after, *pair)) < cosine(of_pair(&before, *pair)) - rounding::OF_COSINES
             };
             let bent = neighbors.of(boundaries, boundary).into_iter().filter(is_bent).flatten();
             let turned = (0..id(own.len())).filter(is_turned);
