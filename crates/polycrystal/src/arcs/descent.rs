@@ -13,7 +13,7 @@ use voronoi::FaceId;
 use crate::NetworkError;
 use crate::arcs::arc_network::{Arc, ArcNetwork};
 use crate::arcs::kkt_system::{Answer, KktSystem};
-use crate::mesh::volume::largest_relative_error;
+use crate::mesh::volume::{VOLUME_LIMIT, largest_relative_error};
 use crate::solver::conjugate_gradients::dot;
 
 /// Damping of an arc at first, in units of its stiffness.
@@ -54,9 +54,6 @@ const HIDDEN: f64 = 1e-12;
 
 /// Error of an area, as a share of it, that counts as none.
 const AREA_TOLERANCE: f64 = 1e-13;
-
-/// Error at rest.
-const AREA_LIMIT: f64 = 1e-10;
 
 /// The same after a step as a share of what that saves of all energy; the next one mends it ...
 const AREA_SHARE: f64 = 1e-2;
@@ -121,7 +118,7 @@ impl Descent {
             let down: Vec<f64> = gradient.iter().map(|slope| -slope).collect();
             let Answer { mut motion, pressures } = tangent.answer(&down, &wanted);
             let fall = dot(&pressures, &wanted) - dot(&gradient, &motion);
-            if fall <= REST * energy && relative_error <= AREA_LIMIT {
+            if fall <= REST * energy && relative_error <= VOLUME_LIMIT {
                 let left = vec![0.0; missing.len()];
                 if let Some(state) = restored(network, &tangent, self.state.clone(), &left, AREA_TOLERANCE) {
                     self.state = state;
@@ -158,7 +155,7 @@ impl Descent {
                 return Ok(Step { is_at_rest: false, vanishing });
             }
         }
-        if relative_error > AREA_LIMIT {
+        if relative_error > VOLUME_LIMIT {
             return Err(NetworkError::volume_not_restored(grain, relative_error));
         }
         // What is too short to move at all is at rest, or on its way to nothing.
@@ -194,7 +191,7 @@ fn restored(
         let missing: Vec<f64> =
             network.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
         let (_, error) = largest_relative_error(&missing, network.areas);
-        if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
+        if error <= enough || (error <= VOLUME_LIMIT && error > 0.5 * last) {
             return Some(state);
         }
         if error.is_nan() || error > last {

@@ -4,12 +4,10 @@ use glam::DVec3;
 
 use crate::box_cut::Piece;
 use crate::box_cut::pieces::Pieces;
-use crate::check::certificate::VOLUME_TOLERANCE;
+use crate::check::certificate;
+use crate::mesh::volume::VOLUME_TOLERANCE;
 use crate::solver::least_motion::{MovingPoint, least_motion};
 use crate::{Freedom, GrainId, NetworkError, Side};
-
-/// What a volume may lack in the end, as a share of it.
-const TOLERANCE: f64 = 1e-12;
 
 /// Most corrections: each gains several digits, for points hardly move.
 const STEPS: usize = 12;
@@ -27,7 +25,8 @@ pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) -> R
         let errors = is.iter().zip(volumes).map(|(is, wanted)| error(*is, *wanted));
         let (grain, relative_error) =
             (0..).zip(errors).max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains");
-        if relative_error <= TOLERANCE || steps == STEPS && relative_error <= VOLUME_TOLERANCE {
+        let is_accepted = steps == STEPS && relative_error <= certificate::VOLUME_TOLERANCE;
+        if relative_error <= VOLUME_TOLERANCE || is_accepted {
             return Ok(());
         }
         if steps == STEPS {

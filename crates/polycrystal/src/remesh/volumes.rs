@@ -3,14 +3,11 @@
 use glam::DVec3;
 use voronoi::Dimension;
 
-use crate::mesh::volume::largest_relative_error;
+use crate::mesh::volume::{VOLUME_TOLERANCE, largest_relative_error};
 use crate::remesh::assembled::Assembled;
 use crate::remesh::torus::Moved;
 use crate::solver::least_motion::{MovingPoint, least_motion};
 use crate::{Elements, Freedom, Network, WallSet};
-
-/// What a volume may lack in the end, as a share of it.
-const TOLERANCE: f64 = 1e-12;
 
 /// Most corrections: each squares what is missing, until rounding is left.
 const STEPS: usize = 8;
@@ -43,7 +40,7 @@ pub(crate) fn restore_by<Points>(
         let mut missing: Vec<f64> =
             wanted.iter().zip(volumes(points)).map(|(wanted, is)| wanted - is).collect();
         let (_, error) = largest_relative_error(&missing, wanted);
-        if error <= TOLERANCE || error >= least {
+        if error <= VOLUME_TOLERANCE || error >= least {
             return error;
         }
         least = error;

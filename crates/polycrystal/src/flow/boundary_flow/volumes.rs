@@ -6,15 +6,8 @@ use glam::DVec3;
 use crate::flow::assembly::pressure_response;
 use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
 use crate::mesh::rounding::{last_place, swept_by_rounding};
-use crate::mesh::volume::largest_relative_error;
+use crate::mesh::volume::{VOLUME_LIMIT, VOLUME_TOLERANCE, largest_relative_error};
 use crate::{GrainId, Network, NetworkError, Volumes};
-
-/// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
-const VOLUME_TOLERANCE: f64 = 1e-12;
-
-/// Difference that is accepted where rounding keeps the iteration above that, beside what the rounding of points themselves explains:
-/// small grains in large boxes.
-const VOLUME_LIMIT: f64 = 1e-10;
 
 /// Bounds on the factor by which a volume correction is larger than its gradient asks for.
 const SMALLEST_GAIN: f64 = 0.3;
@@ -111,7 +104,7 @@ fn missing_volumes(network: &Network, volumes: &[f64]) -> Vec<f64> {
     network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
 }
 
-/// Whether rounding of the points may be all that volumes lack.
+/// Whether rounding may be all that volumes lack: that of the points themselves, and what else is accepted.
 fn is_rounding(network: &Network, missing: &[f64], surface: &[DVec3]) -> bool {
     let areas = network.grain_areas(network.finest(), surface);
     let rounding = last_place(surface);
