@@ -16,9 +16,6 @@ use voronoi::{CellId, Dimension, FaceId, PeriodicVertex, Side, Tessellation, Tra
 use crate::complex::edge::ComplexEdge;
 use crate::complex::ring::{is_folded, is_star_shaped};
 
-/// Sweeps over all edges; each makes room for collapses that the one before had to refuse.
-const SWEEPS: usize = 10;
-
 /// What a regularisation took out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Collapsed {
@@ -151,8 +148,9 @@ impl<'a> Complex<'a> {
         }
     }
 
+    /// Sweeps over all edges as long as that takes some out: each makes room for collapses that the one before had to refuse.
     fn collapse_short_edges(&mut self) {
-        for _ in 0..SWEEPS {
+        loop {
             let before = self.collapsed;
             for edge in self.short_edges() {
                 check_cancelled();

@@ -10,9 +10,6 @@ use crate::complex::ring::LARGEST_FOLD;
 use crate::energy::fans::Fans;
 use crate::{CellComplex, ComplexEdge};
 
-/// Turns of looking for folds; flattening one boundary may fold another, as they share lines.
-const TURNS: usize = 3;
-
 /// How far triple lines and boundaries bulge: from the mean of the vertices around to their one control point.
 ///
 /// Walls do not: what is inside them follows their rims.
@@ -75,20 +72,22 @@ impl Shape {
         let of_face =
             |(fan, face): (usize, &FaceId)| fans.mean_of_corners(fan, &complex.vertices) + self.bulge(*face);
         points.par_extend(fans.faces.par_iter().enumerate().map(of_face));
-        for _ in 0..TURNS {
-            let folded = fans.folded(&points, LARGEST_FOLD);
-            for fan in &folded {
-                for slot in fans.slots_of(*fan)[..fans.rim_len(*fan)].iter().skip(1).step_by(2) {
+        // Flattening one boundary may fold another, as they share lines. Some are folded even when flat.
+        let mut flat = vec![false; fans.faces.len()];
+        loop {
+            let mut folded = fans.folded(&points, LARGEST_FOLD);
+            folded.retain(|fan| !std::mem::replace(&mut flat[*fan], true));
+            if folded.is_empty() {
+                return points;
+            }
+            for fan in folded {
+                for slot in fans.slots_of(fan)[..fans.rim_len(fan)].iter().skip(1).step_by(2) {
                     let line = fans.lines[slot.point as usize - fans.vertex_count()];
                     points[slot.point as usize] = fans.middle(line, &points);
                 }
-                points[fans.center_of(*fan)] = fans.mean_of_corners(*fan, &points);
-            }
-            if folded.is_empty() {
-                break;
+                points[fans.center_of(fan)] = fans.mean_of_corners(fan, &points);
             }
         }
-        points
     }
 
     /// The complex with whole cells, and the control points of its network with fans in this shape.
