@@ -10,7 +10,7 @@ use rayon::iter::repeat_n;
 use rayon::prelude::*;
 use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
-use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
+use crate::energy::sides::{cell_and_offset, freedom_on, tension_between};
 use crate::energy::triangle::Triangle;
 use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::{Cone, ConeSum};
@@ -107,13 +107,7 @@ impl Fans {
             let pairs = of_fan.map(|(fan, slot)| (slots[slot].point as usize, [id(fan), id(slot)]));
             Grouped::new(point_count, pairs)
         };
-        // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
-        let of_wall = |boundary: &Boundary| if boundary.wall.is_some() { 1.0 } else { 0.0 };
-        let of_sides = |sides: &[Side; 2]| {
-            let boundary = boundary(*sides);
-            tension(&boundary) + of_wall(&boundary)
-        };
-        let tensions = || sides.par_iter().map(of_sides).collect();
+        let tensions = || sides.par_iter().map(|sides| tension_between(*sides, tension)).collect();
         let (of_point, tensions) = rayon::join(of_point, tensions);
         Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
     }

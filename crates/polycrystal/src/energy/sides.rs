@@ -34,3 +34,10 @@ pub(crate) fn boundary(between: [Side; 2]) -> Boundary {
     });
     Boundary { sides, wall, twin: None }
 }
+
+/// The tension of the boundary between two sides, and 1 more in a wall: all of a wall has the same area unless it folds, so that this does nothing but unfold it.
+pub(crate) fn tension_between(sides: [Side; 2], tension: impl Fn(&Boundary) -> f64) -> f64 {
+    let boundary = boundary(sides);
+    let of_wall = if boundary.wall.is_some() { 1.0 } else { 0.0 };
+    tension(&boundary) + of_wall
+}

@@ -3,14 +3,11 @@
 use glam::DVec3;
 use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
+use crate::mesh::wall_set::PARALLEL;
 use crate::{CellComplex, ComplexEdge};
 
 /// Share of the length of what goes by which what comes starts off its middle.
 const OPENING: f64 = 0.3;
-
-/// Sine of the angle between a wall and the line in which two others meet, or between two walls, below which it says nothing more
-/// about a point: those of a sphere's walls are a hundred times as large.
-const SAME_WALL: f64 = 1e-4;
 
 /// A change of topology.
 #[derive(Debug, Clone, Copy)]
@@ -100,7 +97,7 @@ fn on_walls(complex: &CellComplex, sides: &[Side], mut point: DVec3) -> DVec3 {
     let mut directions: Vec<DVec3> = Vec::new();
     for (normal, distance) in walls {
         let along = directions.iter().fold(normal, |along, before| along - *before * before.dot(along));
-        if along.length() > SAME_WALL {
+        if along.length() > PARALLEL {
             point += along * ((distance - normal.dot(point)) / along.dot(normal));
             directions.push(along.normalize());
         }

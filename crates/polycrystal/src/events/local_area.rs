@@ -11,16 +11,13 @@ use glam::DVec3;
 use voronoi::{CellId, FaceId};
 
 use crate::energy::shape::Shape;
-use crate::energy::sides::{boundary, cell_and_offset, freedom};
+use crate::energy::sides::{cell_and_offset, freedom, tension_between};
 use crate::{Boundary, CellComplex, Freedom};
 use fan::Fan;
 
 /// How much the pressure of a cell of volume V rises where it loses v, in units of `v V^(-4/3)`. That of a ball alone rises by 1.1;
 /// less than that would let small cells run away, and far more would hold up what the cells around give way to.
 const STIFFNESS: f64 = 3.0;
-
-/// A number that is small beside one.
-const SMALL: f64 = 1e-9;
 
 /// What the area around a place depends on, beside the complex.
 #[derive(Clone, Copy)]
@@ -122,12 +119,9 @@ impl LocalArea {
                     None => Place::Fixed(complex.position(*corner)),
                 }
             });
-            let boundary = boundary(complex.sides(face));
-            // All of a wall has the same area unless it folds, so that this does nothing but unfold it.
-            let of_wall = if boundary.wall.is_some() { 1.0 } else { 0.0 };
-            let tension = tension(&boundary) + of_wall;
-            let sides = complex.sides(face).into_iter().zip([1.0, -1.0]);
-            let beside = sides.filter_map(|(side, sign)| {
+            let sides = complex.sides(face);
+            let beside = sides.into_iter().zip([1.0, -1.0]);
+            let beside = beside.filter_map(|(side, sign)| {
                 let (cell, offset) = cell_and_offset(side, domain)?;
                 Some(Beside { cell: number(cell), offset, sign })
             });
@@ -135,7 +129,7 @@ impl LocalArea {
                 beside: beside.collect(),
                 corners: corners.collect(),
                 bulge: shape.bulge(face),
-                tension,
+                tension: tension_between(sides, tension),
             }
         };
         let faces = complex.faces_at(vertices).into_iter().map(polygon).collect();

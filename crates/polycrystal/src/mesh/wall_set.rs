@@ -6,7 +6,7 @@ use crate::mesh::id::id;
 
 /// Sine of the angle between two walls, or a wall and a line, below which they count as parallel: they hold a point in the
 /// same way.
-const PARALLEL: f64 = 1e-9;
+pub(crate) const PARALLEL: f64 = 1e-9;
 
 /// The walls of the domain that a point lies on: those of a face, an edge or a corner of it, numbered by [`WallSets`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::fan::Fan;
-use super::{Beside, LocalArea, Place, SMALL};
+use super::{Beside, LocalArea, Place};
 
 /// Most steps of descent.
 const STEPS: usize = 20;
@@ -55,7 +55,7 @@ impl LocalArea {
             let dot = |slope: &[DVec3]| slope.iter().zip(&direction).map(|(a, b)| a.dot(*b)).sum::<f64>();
             let square = dot(&slope);
             let bent = square - dot(&moved_slope);
-            step *= if bent > SMALL * square { (square / bent).min(LARGEST_GROWTH) } else { 2.0 };
+            step *= if bent > 0.0 { (square / bent).min(LARGEST_GROWTH) } else { 2.0 };
             let is_slow = area - moved_area < PROGRESS * faces;
             (self.points, area, slope) = (moved, moved_area, moved_slope);
             if is_slow || area <= enough {
