@@ -9,6 +9,10 @@ use crate::solver::multigrid::Multigrid;
 use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId};
 
+/// Most iterations: where rigid parts leave a grain no way to change its volume there is no solution, and with many grains the usual limit would take
+/// minutes.
+const ITERATIONS: usize = 2000;
+
 /// Length of a sum of gradients, as a share of the sum of all lengths at a group, that is rounding.
 const CANCELLED: f64 = 1e-13;
 
@@ -146,7 +150,8 @@ impl Compliance {
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         let balanced = self.balanced(changes);
-        let limits = Limits::of(changes.len(), tolerance);
+        let Limits { steps, .. } = Limits::of(changes.len(), tolerance);
+        let limits = Limits { tolerance, steps: steps.min(ITERATIONS) };
         let precondition = |residual: &[f64]| self.grids.precondition(residual);
         solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
     }
