@@ -22,25 +22,23 @@ const FIRST_DAMPING: f64 = 1.0;
 /// What the damping of arcs is multiplied by after a step that went as the model says ...
 const LOOSENED: f64 = 0.1;
 
-/// ... and before another try where one did not.
+/// ... and before another try where one did not. With 10, one over the other, of the networks that end otherwise three fifths are longer.
 const STIFFENED: f64 = 8.0;
 
-/// Least damping after that.
+/// Least damping after that. With none a twentieth more systems are solved; with 1 of the networks that end otherwise three fifths are longer.
 const LEAST_STIFFENED: f64 = 0.3;
 
 /// Damping with which nothing moves.
 const LARGEST_DAMPING: f64 = 1e8;
 
-/// Share of its length that a step leaves to an arc's chord.
+/// Share of its length that a step leaves to an arc's chord. With 0.5 of the networks that end otherwise five sixths are shorter, but one cluster of small
+/// grains in 40 no longer comes to rest; with 0.1 three quarters are longer, and a quarter more systems are solved.
 const KEPT_LENGTH: f64 = 0.25;
 
-/// How often all chords are looked at for that, as they share ends.
+/// How often all chords are looked at for that, as they share ends. With one look, four of 20 clusters of small grains no longer come to rest.
 const SWEEPS: usize = 4;
 
-/// Share of a chord's direction in which an end is free, below which walls hold it.
-const SMALLEST_SHARE: f64 = 0.1;
-
-/// Most that an arc's turning changes in a step, in radians.
+/// Most that an arc's turning changes in a step, in radians. Without a bound three fifths of the networks that end otherwise are longer.
 const LARGEST_TURN: f64 = 0.7;
 
 /// Largest turning of an arc, in radians: no arc closes to a circle.
@@ -58,10 +56,11 @@ const AREA_TOLERANCE: f64 = 1e-13;
 /// The same after a step as a share of what that saves of all energy; the next one mends it ...
 const AREA_SHARE: f64 = 1e-2;
 
-/// ... and at most.
+/// ... and at most. Without this bound one of 1176 networks ends with boundaries that cross.
 const LOOSE_AREA: f64 = 1e-4;
 
-/// Most corrections of areas.
+/// Most corrections of areas. Without a limit one of 1176 networks takes a hundred times as long. Giving up where the error does not halve instead lets five
+/// more come to rest, but solves a twelfth more systems, and of the networks that end otherwise 70 are longer and 54 shorter.
 const CORRECTIONS: usize = 40;
 
 /// A state on its way down.
@@ -132,7 +131,7 @@ impl Descent {
             let left: Vec<f64> = missing.iter().zip(&wanted).map(|(lack, wanted)| lack - wanted).collect();
             let Some(state) = restored(network, &tangent, moved, &left, enough) else {
                 self.stiffen_all();
-                mended *= 0.5;
+                mended *= LOOSENED;
                 continue;
             };
             let turned = turned_over(network, &self.state, &state);
@@ -144,12 +143,13 @@ impl Descent {
             let paid = dot(&pressures, &missing) - dot(&pressures, &network.missing(&state));
             let share = (energy - network.energy(&state) + paid) / saved;
             let is_hidden = saved < HIDDEN * energy;
+            // Loosened at three quarters and stiffened below one, as is usual: with one threshold, 0.5 or 0.25, a twelfth more systems are solved.
             if share > 0.75 || is_hidden {
                 self.dampings.iter_mut().for_each(|damping| *damping *= LOOSENED);
             } else if share < 0.25 {
                 self.stiffen_all();
             }
-            if share > 0.05 || is_hidden {
+            if share > 0.0 || is_hidden {
                 self.state = state;
                 self.pressures = pressures;
                 return Ok(Step { is_at_rest: false, vanishing });
@@ -220,9 +220,9 @@ fn hold_chords(network: &ArcNetwork<'_>, state: &[f64], motion: &mut [f64]) -> V
             if sweep == 0 {
                 vanishing.push(arc.face);
             }
-            // Walls may leave it to one end.
+            // Walls may leave it to one end; where they hold both, nothing is lacking.
             let free = network.free_at_ends(arc, along);
-            let share = lack / (free[0] + free[1]).dot(along).max(SMALLEST_SHARE);
+            let share = lack / (free[0] + free[1]).dot(along);
             for (end, sign) in [(0, -share), (1, share)] {
                 motion[own[2 * end]] += sign * free[end].x;
                 motion[own[2 * end + 1]] += sign * free[end].y;

@@ -19,22 +19,20 @@ use crate::{Boundary, CellComplex, OutgoingHalfEdge};
 /// Length, in units of the feature size, below which an edge that would vanish may go; around small grains, in units of theirs.
 const SHORT: f64 = 0.3;
 
-/// Length, in the same unit, below which the cells' own edges do as well: they tell nothing of where the tensions pull.
+/// Length, in the same unit, below which the cells' own edges do as well: they tell nothing of where the tensions pull. Without it lengths are as good,
+/// but three clusters of small grains in 80 no longer come to rest; with 0.03 two of 20 do not.
 const TINY: f64 = 0.01;
 
-/// Length of a new edge at most, in the same unit ...
+/// Length of a new edge at most, in the same unit. With 0.09, or no bound, steps are a tenth fewer, but of the networks that end otherwise three quarters are longer ...
 const OPENING: f64 = 0.03;
 
 /// ... and as a share of the shortest edge beside it.
 const OPENING_SHARE: f64 = 0.3;
 
-/// Energy that a new edge must save, as a share of its tension.
-const LEAST_SAVED: f64 = 1e-6;
-
-/// Difference of what two openings save, as a share, that counts as none.
+/// What an opening saves, or saves more than another, that counts as nothing, as a share.
 const TIED: f64 = 1e-9;
 
-/// How often a point between the same cells may open: what comes back is to stay.
+/// How often a point between the same cells may open: what comes back is to stay. With 3 as in space, three more points of 294 networks stay closed.
 const MOST_TRIES: u8 = 8;
 
 /// Edges that may change their topology.
@@ -305,7 +303,7 @@ impl Point<'_> {
         }
         let tension = self.switcher.tension_between(sides);
         let rate = tension - saved;
-        let is_due = saved > 0.0 && rate < -LEAST_SAVED * tension.max(saved);
+        let is_due = saved > 0.0 && rate < -TIED * tension.max(saved);
         is_due.then(|| Opening { outgoing: self.outgoing[start..end].to_vec(), sides, rate, moves })
     }
 }
