@@ -20,12 +20,9 @@ pub struct Tuning {
     /// Steps that the relaxation time is divided into on the control mesh. With five, networks of measured maps stay further from rest; ten leave
     /// angles as they are, and triangles thinner.
     pub coarse_steps: usize,
-    /// Steps that the same time is divided into once more on the next level, where less is left to do. Three leave angles a fifth of a degree
-    /// worse.
+    /// Steps that the same time is divided into once more on the next level, where less is left to do. Three leave angles a quarter of a degree
+    /// worse, take a tenth less, and make a hundredth of the triangles rounder by half a degree.
     pub fine_steps: usize,
-    /// The same where grains have come together and parted before, and lines are nearly where they belong. With four, angles spread by 3.7 degrees
-    /// instead of 4.0, a hundredth of the triangles is below 15.7 degrees instead of 16.1, and it takes a tenth longer; two leave 4.4 degrees.
-    pub settled_steps: usize,
     /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles. Ten bring no more.
     pub forecast_steps: usize,
     /// Factor by which lines that the forecast has shortened may be longer than others to collapse. With 1 thin triangles stay, 3 takes out
@@ -68,7 +65,6 @@ impl Default for Tuning {
             junction_softness: 2.0,
             coarse_steps: 7,
             fine_steps: 4,
-            settled_steps: 3,
             forecast_steps: 5,
             forecast_factor: 2.0,
             tolerance: 3e-2,
