@@ -115,7 +115,12 @@ impl fmt::Display for Summary<'_> {
             )?;
         }
         if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {
-            writeln!(out, "{stretched}; angles, residual and triangles are from before")?;
+            // Triangles of a size are made of stretched boundaries.
+            let before = match polycrystal.elements {
+                None => "angles, residual and triangles",
+                Some(_) => "angles and residual",
+            };
+            writeln!(out, "{stretched}; {before} are from before")?;
         }
         if let Some(Synthesis { angles_before, .. }) = synthesis {
             write_angles(out, *angles_before, polycrystal.validation.angles)?;

@@ -206,7 +206,8 @@ impl LabelledFile {
         let node_types =
             node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
         let mut points = mesh.points;
-        let stretch = settings.as_ref().map_or(DVec3::ONE, stretch);
+        let at_rest = settings.as_ref().filter(|settings| !is_remeshed(settings));
+        let stretch = at_rest.map_or(DVec3::ONE, stretch);
         if stretch != DVec3::ONE {
             points.iter_mut().for_each(|point| *point /= stretch);
         }
@@ -330,6 +331,11 @@ fn numbered<T>(of_grains: Vec<T>, first: u32) -> Option<Vec<(GrainId, T)>> {
 fn first_label(settings: &Table) -> u32 {
     let names = settings.get("names").and_then(Value::as_str).map(|names| Names::from_str(names, false));
     u32::from(names.is_some_and(|names| names != Ok(Names::default())))
+}
+
+/// Whether the settings ask for elements of a size. Their triangles were made of stretched boundaries, and are as good as they can be there.
+fn is_remeshed(settings: &Table) -> bool {
+    ["element-size", "elements-per-grain"].iter().any(|key| settings.contains_key(*key))
 }
 
 /// By what the settings multiplied coordinates in the end.
