@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::box_cut::Piece;
 use crate::box_cut::pieces::Pieces;
-use crate::check::certificate;
-use crate::mesh::volume::VOLUME_TOLERANCE;
+use crate::check::certificate::VOLUME_TOLERANCE;
+use crate::mesh::volume::VOLUME_RESTORED;
 use crate::solver::least_motion::{MovingPoint, least_motion};
 use crate::{Freedom, GrainId, NetworkError, Side};
 
@@ -25,8 +25,7 @@ pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) -> R
         let errors = is.iter().zip(volumes).map(|(is, wanted)| error(*is, *wanted));
         let (grain, relative_error) =
             (0..).zip(errors).max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains");
-        let is_accepted = steps == STEPS && relative_error <= certificate::VOLUME_TOLERANCE;
-        if relative_error <= VOLUME_TOLERANCE || is_accepted {
+        if relative_error <= VOLUME_RESTORED || steps == STEPS && relative_error <= VOLUME_TOLERANCE {
             return Ok(());
         }
         if steps == STEPS {

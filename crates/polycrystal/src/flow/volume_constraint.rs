@@ -150,8 +150,8 @@ impl Compliance {
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         let balanced = self.balanced(changes);
-        let Limits { steps, .. } = Limits::of(changes.len(), tolerance);
-        let limits = Limits { tolerance, steps: steps.min(ITERATIONS) };
+        let limits = Limits::of(changes.len(), tolerance);
+        let limits = Limits { steps: limits.steps.min(ITERATIONS), ..limits };
         let precondition = |residual: &[f64]| self.grids.precondition(residual);
         solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
     }

@@ -7,10 +7,10 @@ use voronoi::Dimension;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::{Boundary, GrainId, Surface};
 
-/// Error of a volume, as a share of it, that counts as none.
-pub(crate) const VOLUME_TOLERANCE: f64 = 1e-12;
+/// Error of a volume, as a share of it, up to which it is restored.
+pub(crate) const VOLUME_RESTORED: f64 = 1e-12;
 
-/// Error that is accepted where rounding keeps it above what counts as none: small grains in large boxes.
+/// Error that is accepted where rounding keeps it above that: small grains in large boxes.
 pub(crate) const VOLUME_LIMIT: f64 = 1e-10;
 
 /// The volume of the tetrahedron that a triangle spans with the origin.

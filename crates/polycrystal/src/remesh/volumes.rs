@@ -3,7 +3,7 @@
 use glam::DVec3;
 use voronoi::Dimension;
 
-use crate::mesh::volume::{VOLUME_TOLERANCE, largest_relative_error};
+use crate::mesh::volume::{VOLUME_RESTORED, largest_relative_error};
 use crate::remesh::assembled::Assembled;
 use crate::remesh::torus::Moved;
 use crate::solver::least_motion::{MovingPoint, least_motion};
@@ -40,7 +40,7 @@ pub(crate) fn restore_by<Points>(
         let mut missing: Vec<f64> =
             wanted.iter().zip(volumes(points)).map(|(wanted, is)| wanted - is).collect();
         let (_, error) = largest_relative_error(&missing, wanted);
-        if error <= VOLUME_TOLERANCE || error >= least {
+        if error <= VOLUME_RESTORED || error >= least {
             return error;
         }
         least = error;

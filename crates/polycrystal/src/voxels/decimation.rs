@@ -8,6 +8,7 @@ use voronoi::PeriodicVertex;
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::certificate::Faults;
 use crate::mesh::id::id;
+use crate::mesh::volume::VOLUME_RESTORED;
 use crate::network::grain_complex::limits;
 use crate::network::line_coarsening::coarsened_segments;
 use crate::voxels::bending::Boxes;
@@ -19,7 +20,7 @@ use crate::voxels::staircase::Kind;
 use crate::voxels::surface::VoxelSurface;
 use crate::voxels::tiles::{Corners, Tiles};
 use crate::voxels::tuning::VoxelTuning;
-use crate::voxels::volumes::{VOLUME_TOLERANCE, VolumeSearch, Wanted};
+use crate::voxels::volumes::{VolumeSearch, Wanted};
 use crate::{BoundaryId, GrainId, Surface};
 
 /// A surface whose short edges are to collapse.
@@ -140,7 +141,7 @@ impl Decimation<'_> {
         loop {
             let mut points = left.clone();
             let error = search.restore(&mut points, &boxes, &stays).error;
-            if error > VOLUME_TOLERANCE {
+            if error > VOLUME_RESTORED {
                 return best.unwrap_or(points);
             }
             let new: Vec<[u32; 2]> = faults(&points).difference(&known).copied().collect();

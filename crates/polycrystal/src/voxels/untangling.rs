@@ -7,12 +7,13 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
+use crate::mesh::volume::VOLUME_RESTORED;
 use crate::voxels::bending::Boxes;
 use crate::voxels::copies::across;
 use crate::voxels::graph::Graph;
 use crate::voxels::neighbors::Neighbors;
 use crate::voxels::tuning::VoxelTuning;
-use crate::voxels::volumes::{Restored, VOLUME_TOLERANCE, VolumeSearch};
+use crate::voxels::volumes::{Restored, VolumeSearch};
 
 /// What points are moved by.
 pub(super) struct Untangling<'a> {
@@ -49,7 +50,7 @@ impl Untangling<'_> {
             let mut points = best.points.clone();
             let is_held = self.smooth_folds(&mut points, &folds, &neighbors);
             let restored = self.search.restore(&mut points, self.boxes, &is_held);
-            if restored.error > VOLUME_TOLERANCE {
+            if restored.error > VOLUME_RESTORED {
                 break;
             }
             let moved: Vec<u32> =
@@ -57,7 +58,7 @@ impl Untangling<'_> {
             let crossings = neighbors.crossings_at(&points, &moved, self.boxes.places);
             let tried = self.without_crossings(points, is_held, restored, crossings, &neighbors, &home);
             let folds_left = neighbors.folds(&tried.points);
-            if tried.volume_error > VOLUME_TOLERANCE
+            if tried.volume_error > VOLUME_RESTORED
                 || tried.crossings > best.crossings
                 || folds_left.len() >= folds.len()
             {

@@ -7,7 +7,7 @@ use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
 use crate::mesh::id::id;
-use crate::mesh::volume::largest_relative_error;
+use crate::mesh::volume::{VOLUME_RESTORED, largest_relative_error};
 use crate::solver::conjugate_gradients::{Limits, SOLVED, solve};
 use crate::voxels::bending::Boxes;
 use crate::voxels::elements::CutFaces;
@@ -17,9 +17,6 @@ use crate::{GrainId, Side};
 
 /// What volumes may lack in the end, as a share of each.
 const TOLERANCE: f64 = 1e-13;
-
-/// Largest error of a volume that mended folds may leave, as a share of it.
-pub(super) const VOLUME_TOLERANCE: f64 = 1e-12;
 
 /// How much more grains gain than others lose when points move, as a share, for rounding alone.
 const ROUNDING: f64 = 1e-9;
@@ -127,7 +124,7 @@ fn give_up_sums(matrix: &[BTreeMap<u32, f64>], missing: &mut [f64], volumes: &[f
     for group in groups {
         let rest = group.iter().map(|grain| missing[*grain as usize]).sum::<f64>() / group.len() as f64;
         group.iter().for_each(|grain| missing[*grain as usize] -= rest);
-        let lacks = |grain: &u32| rest.abs() > VOLUME_TOLERANCE * volumes[*grain as usize];
+        let lacks = |grain: &u32| rest.abs() > VOLUME_RESTORED * volumes[*grain as usize];
         if 2 * group.len() <= missing.len() && group.iter().any(lacks) {
             stuck.extend(group.into_iter().map(GrainId));
         }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::flow::assembly::pressure_response;
 use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
 use crate::mesh::rounding::{last_place, swept_by_rounding};
-use crate::mesh::volume::{VOLUME_LIMIT, VOLUME_TOLERANCE, largest_relative_error};
+use crate::mesh::volume::{VOLUME_LIMIT, VOLUME_RESTORED, largest_relative_error};
 use crate::{GrainId, Network, NetworkError, Volumes};
 
 /// Bounds on the factor by which a volume correction is larger than its gradient asks for.
@@ -65,8 +65,7 @@ impl Flow<'_> {
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
                 gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
             }
-            if relative_error <= VOLUME_TOLERANCE
-                || (stalled && is_rounding(self.network, &missing, &surface))
+            if relative_error <= VOLUME_RESTORED || (stalled && is_rounding(self.network, &missing, &surface))
             {
                 return Ok(surface);
             }
