@@ -166,12 +166,11 @@ fn a_periodic_network_stands_once_on_the_torus() {
 fn surface_evolver_finds_every_volume_and_the_area_and_lessens_it() {
     let mut script = "printf \"area %20.15g\\n\", total_energy\n".to_owned();
     script += "foreach body bb do printf \"body %g %20.15g %20.15g\\n\", id, volume, target\n";
-    script +=
-        "g 3\nprintf \"later %20.15g %20.15g\\n\", total_energy, max(body, abs(volume/target - 1))\nq\nq\n";
+    script += "g 3\nprintf \"later %20.15g %20.15g\\n\", total_energy, max(body where target > 0, abs(volume/target - 1))\nq\nq\n";
     let directory = tempfile::tempdir().unwrap();
     let commands = directory.path().join("commands");
     fs::write(&commands, script).unwrap();
-    for polycrystal in [&*SPACE, &*TORUS, &*CHANNEL] {
+    for (polycrystal, is_periodic) in [(&*SPACE, false), (&*TORUS, true), (&*CHANNEL, true)] {
         let (_folder, path) = write(polycrystal, "grains.fe");
         let mut evolver = Command::new("evolver");
         evolver.arg(&path).stdin(fs::File::open(&commands).unwrap());
@@ -190,7 +189,12 @@ fn surface_evolver_finds_every_volume_and_the_area_and_lessens_it() {
         assert_eq!(bodies.len(), volumes.len(), "{said}");
         for (body, expected) in bodies.iter().zip(volumes) {
             assert!((body[1] / expected - 1.0).abs() < 1e-9, "{body:?}");
-            assert!((body[2] / expected - 1.0).abs() < 1e-12, "{body:?}");
+            // Between walls the last volume follows from the others, and is not held as well.
+            if is_periodic || body[0] < bodies.len() as f64 {
+                assert!((body[2] / expected - 1.0).abs() < 1e-12, "{body:?}");
+            } else {
+                assert_eq!(body[2], 0.0);
+            }
         }
         let (area, expected) = (numbers("area")[0][0], energy(polycrystal));
         assert!((area / expected - 1.0).abs() < 1e-12, "{area} {expected}");

@@ -186,7 +186,7 @@ fn relax_levels<T>(
         return accepted(Relaxed { steps, time, ..Relaxed::new(last, points) });
     }
     let (first, first_steps) = match (start, relaxation) {
-        (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.fine_steps),
+        (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.settled_steps),
         _ => (0, tuning.coarse_steps),
     };
     let count = first_steps + (last - first) * tuning.fine_steps;

@@ -1,4 +1,7 @@
-//! Surface Evolver's datafile: every grain a body of fixed volume, walls as constraints, and tension as the network has it.
+//! Surface Evolver's datafile: grains as bodies of fixed volume, walls as constraints, and tension as the network has it.
+//!
+//! Grains fill the domain, so that one volume follows from the others. Held as well, it makes Evolver's system singular: the last
+//! body goes without.
 //!
 //! <https://kenbrakke.com/evolver/html/datafile.htm>. It counts from 1, so grain 0 is body 1. A periodic network is one of
 //! Evolver's torus model: each point, edge and triangle once, and with each edge the number of periods that it crosses. An axis
@@ -22,7 +25,7 @@ pub(super) const FORMAT: Format = Format {
     extra: Extra { programs: "Surface Evolver", dimension: Some(Dimension::Three), ..Extra::NONE },
 };
 
-/// Writes the file; each point stays on its walls, and each body keeps its volume.
+/// Writes the file; each point stays on its walls.
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let (surface, network) = (polycrystal.surface()?, &polycrystal.network);
     let level = network.finest_level();
@@ -32,7 +35,7 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
     writeln!(out)?;
     if domain.is_periodic() {
-        // Filled, so that Evolver knows that one of the volumes follows from the others.
+        // Filled, so that Evolver itself leaves out one of the volumes.
         let DVec3 { x, y, z } = domain.size();
         writeln!(out, "torus_filled\nperiods\n{x:?} 0 0\n0 {y:?} 0\n0 0 {z:?}\n")?;
     }
@@ -96,12 +99,14 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     }
 
     writeln!(out, "\nbodies")?;
+    let last = bodies.len();
     for (body, (faces, volume)) in (1..).zip(bodies.into_iter().zip(network.cell_volumes())) {
         write!(out, "{body}")?;
         for (sign, face) in faces.into_iter().flat_map(|(sign, range)| range.map(move |face| (sign, face))) {
             write!(out, " {sign}{face}")?;
         }
-        writeln!(out, " volume {volume:?}")?;
+        let is_held = domain.is_periodic() || body < last;
+        writeln!(out, "{} volume {volume:?}", if is_held { "" } else { " // follows from the others:" })?;
     }
     writeln!(out, "\nread")
 }
