@@ -136,7 +136,10 @@ impl Descent {
             };
             let turned = turned_over(network, &self.state, &state);
             if !turned.is_empty() {
-                self.stiffen(turned.into_iter().map(FaceId::index));
+                // What is stiff itself is turned by chords beside it that are held.
+                let is_stiff = turned.iter().any(|face| self.dampings[face.index()] >= FIRST_DAMPING);
+                let held = if is_stiff { &vanishing[..] } else { &[] };
+                self.stiffen(turned.iter().chain(held).map(|face| face.index()));
                 continue;
             }
             // What areas still lack, or no longer do, is worth its pressure.

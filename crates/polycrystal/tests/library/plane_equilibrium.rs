@@ -175,13 +175,14 @@ proptest! {
         check_equilibrium(&equilibrium_of(&weighted_cells(30, random_seed), &one_tension).expect("relaxes"))?;
     }
 
-    /// Walls with many corners, over which boundaries slide.
+    /// Walls with many corners, over which boundaries slide. One in some thousands is refused: its boundaries press two sides of a grain together.
     #[test]
     fn grains_in_a_disc_come_to_equilibrium(count in 2..30_usize, random_seed in 0..u64::MAX) {
         let cells = cells_of_disc(count, random_seed);
         prop_assume!(cells.is_some());
-        let cells = cells.expect("as assumed");
-        check_equilibrium(&equilibrium_of(&cells, &one_tension).expect("relaxes"))?;
+        let equilibrium = equilibrium_of(&cells.expect("as assumed"), &one_tension);
+        prop_assume!(!matches!(equilibrium, Err(NetworkError::Invalid(_))));
+        check_equilibrium(&equilibrium.expect("relaxes"))?;
     }
 }
 
@@ -207,6 +208,13 @@ fn areas_that_an_event_leaves_far_off_come_back_step_by_step() {
     let equilibrium = equilibrium_of(&cells, &one_tension).expect("relaxes");
     assert!(equilibrium.reconnections.count() > 0);
     check_equilibrium(&equilibrium).expect("an equilibrium");
+}
+
+/// The chord of a long arc that a step holds once turned a short one beside it over, however stiff that was.
+#[test]
+fn a_short_edge_beside_long_ones_that_shrink_does_not_turn_over() {
+    let cells = cells_of_disc(5, 1_469_741_589_885_914_832).expect("seeds in the disc");
+    check_equilibrium(&equilibrium_of(&cells, &one_tension).expect("relaxes")).expect("an equilibrium");
 }
 
 /// A topology kept costs length.
