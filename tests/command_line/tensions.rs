@@ -271,7 +271,7 @@ fn mobilities_are_those_of_the_law_and_change_the_growth() {
 fn what_has_no_equilibrium_is_named_where_nothing_comes_to_rest() {
     let workplace = Workplace::new();
     let wet = "--phase a:0.5 --phase b:0.5 --tension 1 --tension a/a:8 -n 1";
-    let said = workplace.run(&format!("{wet} --seeds 200 --rng-seed 1"));
+    let said = workplace.run(&format!("{wet} --seeds 200 --rng-seed 2"));
     assert!(
         said.contains("led to no valid network, because lines without equilibrium never come to rest"),
         "{said}"

@@ -64,7 +64,6 @@ fn rows() -> Vec<Row> {
         row("no merged lines", |tuning| tuning.merged_length = 0.0),
         row("merged 0.12", |tuning| tuning.merged_length = 0.12),
         row("no slow small grains", |tuning| tuning.small_grain = 0.0),
-        row("no turn", |tuning| tuning.largest_turn = -1.0),
         row("no widening", |tuning| tuning.widening = 0.0),
         row("level 0 only", |tuning| tuning.finest_moved = 0),
         row("settled steps 3", |tuning| tuning.settled_steps = 3),

@@ -7,6 +7,7 @@ pub(crate) mod boundary_elements;
 pub(crate) mod connectivity;
 pub(crate) mod disjoint_sets;
 pub(crate) mod elements;
+pub(crate) mod fold;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
+use crate::mesh::fold::is_folded;
 use crate::{Elements, LevelView};
 
 /// Normal of a triangle, or normal of a segment in the plane, as long as twice its area or as its length.
@@ -66,14 +67,4 @@ pub(crate) fn folded_in_boundary(
     let mut folded: Vec<[u32; 2]> = folded.map(|pair| pair.map(|index| elements[index as usize])).collect();
     folded.iter_mut().for_each(|pair| pair.sort_unstable());
     folded
-}
-
-/// Whether two neighbours with these normals, of any length, are further apart than the angle whose cosine is given, or without area.
-pub(crate) fn is_folded([a, b]: [DVec3; 2], cosine: f64) -> bool {
-    let dot = a.dot(b);
-    // Nearly all pairs are told by this alone.
-    if dot > 0.0 && cosine <= 0.0 {
-        return false;
-    }
-    dot < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
 }

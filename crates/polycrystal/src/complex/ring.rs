@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 
+use crate::mesh::fold::{LARGEST_FOLD, are_apart};
+
 /// Share of the length of a short edge below which an edge is tiny.
 const TINY: f64 = 0.01;
-
-/// Cosine of the largest angle between neighbouring triangles of a face (75 degrees): neither relaxation nor later levels must reach the 90 of a fold.
-pub(crate) const LARGEST_FOLD: f64 = 0.26;
 
 /// Cosine of the largest angle between a face and one of the triangles that join its edges to its centres (60 degrees).
 pub(crate) const LARGEST_BEND: f64 = 0.5;
@@ -49,5 +48,5 @@ pub(crate) fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
 pub(crate) fn is_folded(ring: &[DVec3]) -> bool {
     let Fan { triangles, .. } = Fan::new(ring);
     let mut pairs = triangles.iter().zip(triangles.iter().cycle().skip(1));
-    pairs.any(|((_, a), (_, b))| a.dot(*b) < LARGEST_FOLD * a.length() * b.length())
+    pairs.any(|((_, a), (_, b))| are_apart([*a, *b], LARGEST_FOLD))
 }

@@ -12,6 +12,7 @@ use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
 use crate::energy::sides::{cell_and_offset, freedom_on, tension_between};
 use crate::energy::triangle::Triangle;
+use crate::mesh::fold::is_folded;
 use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::{Cone, ConeSum};
 use crate::{Boundary, CellComplex, ComplexEdge, Freedom};
@@ -201,7 +202,7 @@ impl Fans {
         let is_folded = |fan: &usize| {
             let normals = &normals[self.starts[*fan]..self.starts[*fan + 1] - 1];
             let pairs = normals.iter().zip(normals.iter().cycle().skip(1));
-            pairs.into_iter().any(|(a, b)| is_bent(*a, *b, cosine))
+            pairs.into_iter().any(|(a, b)| is_folded([*a, *b], cosine))
         };
         (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).filter(is_folded).collect()
     }
@@ -290,11 +291,6 @@ fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut 
         terms[next].to_center += at_k;
     }
     tension * area
-}
-
-/// Whether two normals are further apart than the angle whose cosine is given; those of triangles without area are.
-pub(crate) fn is_bent(a: DVec3, b: DVec3, cosine: f64) -> bool {
-    a.dot(b) < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
 }
 
 /// The line between two corners in a row, and the translation of its point there.

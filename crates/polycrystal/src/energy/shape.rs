@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
-use crate::complex::ring::LARGEST_FOLD;
 use crate::energy::fans::Fans;
+use crate::mesh::fold::LARGEST_FOLD;
 use crate::{CellComplex, ComplexEdge};
 
 /// How far triple lines and boundaries bulge: from the mean of the vertices around to their one control point.

@@ -3,8 +3,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use crate::complex::ring::LARGEST_FOLD;
-use crate::energy::fans::{FanTerms, Fans, is_bent};
+use crate::energy::fans::{FanTerms, Fans};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
@@ -15,6 +14,7 @@ use crate::flow::pressure_response::CHUNK;
 use crate::flow::system::{Parts, System, softened};
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
+use crate::mesh::fold::{LARGEST_FOLD, are_apart, is_folded};
 use crate::mesh::rounding::{self, last_place};
 use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId, NetworkError};
@@ -271,17 +271,12 @@ impl FanFlow<'_> {
 
     /// The points of triangles that a step has turned too far, or bent too far and more than they were; given the normals before and after.
     fn broken(&self, before: &[DVec3], after: &[DVec3]) -> Vec<[u32; 3]> {
-        let largest_turn = self.tuning.largest_turn;
         let cosine = |normals: &[DVec3], [a, b]: [usize; 2]| {
             normals[a].normalize_or_zero().dot(normals[b].normalize_or_zero())
         };
-        let is_turned = |slot: usize| {
-            let turn =
-                before[slot].dot(after[slot]) - largest_turn * before[slot].length() * after[slot].length();
-            turn.is_nan() || turn < 0.0
-        };
+        let is_turned = |slot: usize| are_apart([before[slot], after[slot]], LARGEST_FOLD);
         let is_bent = |pair: [usize; 2]| {
-            is_bent(after[pair[0]], after[pair[1]], LARGEST_FOLD)
+            is_folded(pair.map(|slot| after[slot]), LARGEST_FOLD)
                 && cosine(after, pair) < cosine(before, pair) - rounding::OF_COSINES
         };
         let of_fan = |fan: usize| {

@@ -46,8 +46,6 @@ pub struct Tuning {
     /// The largest cotangent that an angle counts with: that of 1 degree. With that of 11 degrees the matrix of a step is less stiff there than the
     /// area itself, so that points swing to and fro from step to step on the way to rest, farther each time.
     pub largest_cotangent: f64,
-    /// Cosine of the largest angle that an element may turn by within a step (60 degrees); -1 for any.
-    pub largest_turn: f64,
     /// Times that widening what is still thin in the end may look at as many triangles as there are: some places are hopeless, and must not
     /// take longer than the flow. 0 leaves all as it is.
     pub widening: f64,
@@ -76,7 +74,6 @@ impl Default for Tuning {
             small_grain: 0.5,
             centering: 0.3,
             largest_cotangent: 50.0,
-            largest_turn: 0.5,
             widening: 10.0,
             finest_moved: 1,
             finest_balanced: FINEST_MOVED,

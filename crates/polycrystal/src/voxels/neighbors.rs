@@ -3,10 +3,10 @@
 use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 
-use crate::check::folds::is_folded;
 use crate::check::intersections::{boundary_boxes, crossing_elements};
 use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
+use crate::mesh::fold::is_folded;
 use crate::mesh::id::id;
 use crate::voxels::copies::Copies;
 use crate::voxels::elements::{CutFaces, ElementList};

@@ -6,14 +6,13 @@ use rayon::prelude::*;
 use voronoi::Dimension;
 
 use super::{Flow, displaced};
-use crate::check::folds::is_folded;
-use crate::complex::ring::LARGEST_FOLD;
 use crate::flow::assembly::gradient;
 use crate::flow::boundary_flow::level_elements::LevelElements;
 use crate::flow::giving_way::GivingWay;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::tied_points::Numbering;
+use crate::mesh::fold::{LARGEST_FOLD, are_apart, is_folded};
 use crate::mesh::id::id;
 use crate::mesh::rounding;
 use crate::mesh::volume::volumes_of_grains;
@@ -132,9 +131,7 @@ impl Flow<'_> {
             };
             let [before, after] = [before, after].map(normals);
             let is_turned = |index: &u32| {
-                let [before, after] = [&before, &after].map(|normals| normals[*index as usize]);
-                let turn = before.dot(after) - self.tuning.largest_turn * before.length() * after.length();
-                turn.is_nan() || turn < 0.0
+                are_apart([&before, &after].map(|normals| normals[*index as usize]), LARGEST_FOLD)
             };
             let of_pair = |normals: &[DVec3], pair: [u32; 2]| pair.map(|index| normals[index as usize]);
             let cosine = |pair: [DVec3; 2]| {
