@@ -1,5 +1,7 @@
 //! How a flow gives grains the volumes of their cells.
 
+use std::cell::LazyCell;
+
 use cancellation::check_cancelled;
 use glam::DVec3;
 
@@ -44,11 +46,15 @@ impl Flow<'_> {
     }
 
     fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
-        let terms = self.patches.terms(points);
-        let groups = groups.number();
-        let response =
-            pressure_response(self.network, &self.patches, &terms, &self.unknowns(points, &groups));
-        drop(terms);
+        let start = points.to_vec();
+        // Where volumes are right already, nothing is asked of it.
+        let response = LazyCell::new(|| {
+            let groups = groups.number();
+            let terms = self.patches.terms(&start);
+            let response =
+                pressure_response(self.network, &self.patches, &terms, &self.unknowns(&start, &groups));
+            (groups, response)
+        });
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
@@ -69,6 +75,7 @@ impl Flow<'_> {
             {
                 return Ok(surface);
             }
+            let (groups, response) = &*response;
             // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
             let is_hopeless = relative_error.is_nan() || relative_error >= 1.0 || !response.can_change(grain);
             if step == VOLUME_STEPS || is_hopeless {
