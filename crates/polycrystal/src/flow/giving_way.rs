@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
-use crate::solver::conjugate_gradients::{Limits, solve};
+use crate::solver::conjugate_gradients::{Limits, SOLVED, solve};
 use crate::{Freedom, NetworkError};
 
 /// Attempts at a step, each with more that gives way. Usual ones need three, grains about to vanish some twenty.
@@ -21,9 +21,6 @@ const SMOOTHED_RINGS: usize = 2;
 /// Distance, in units of the longest, below which neighbours that give way move as one, and others count as no nearer: products with one over it stay
 /// exact. A noisy face-centred lattice, whose points of six grains are lines of 1e-12 each, takes 1.6 s to grow so; 54 s where its points each moved.
 const LEAST_DISTANCE: f64 = 1e-6;
-
-/// Error of smoothed motions, and the most iterations for them.
-const LIMITS: Limits = Limits { tolerance: 1e-10, steps: 1000 };
 
 /// Motions of unknowns that are smoothed where they break something.
 ///
@@ -232,7 +229,7 @@ fn means(groups: &[Group]) -> Vec<DVec3> {
             |(place, left): (usize, &f64)| left / groups[place / 3].weight.max(f64::MIN_POSITIVE);
         residual.iter().enumerate().map(over_weight).collect()
     };
-    let means = solve(apply, precondition, &right_side, &LIMITS);
+    let means = solve(apply, precondition, &right_side, &Limits::of(right_side.len(), SOLVED));
     (0..groups.len()).map(|group| at(&means, group)).collect()
 }
 

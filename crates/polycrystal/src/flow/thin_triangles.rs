@@ -10,6 +10,7 @@ use subzero::{FaceId, VertexRule};
 
 use crate::energy::patch::{Elements, LocalStencils, index_in};
 use crate::energy::patches::local_elements;
+use crate::mesh::fold::LARGEST_FOLD;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{Freedom, LevelView, Mesh, Network};
 
@@ -31,9 +32,6 @@ const HALVINGS: usize = 20;
 
 /// How far points on lines go where points inside boundaries go a length of one: with lines, angles between boundaries change.
 const EASE_OF_LINES: f64 = 0.2;
-
-/// Cosine of the angle from where a triangle faced at first that it may have in the end (78 degrees).
-const LARGEST_TURN: f64 = 0.2;
 
 /// Share of the decrease promised by the gradient which a step must bring (Armijo).
 const LEAST_DECREASE: f64 = 1e-4;
@@ -121,7 +119,7 @@ impl Room {
     pub(crate) fn widened(&self, wanted: f64, steps: usize) -> Option<Vec<(u32, DVec3)>> {
         let mut points = self.start.clone();
         let mut at = self.distortion(&points);
-        let bend = at.least_cosine.min(LARGEST_TURN);
+        let bend = at.least_cosine.min(LARGEST_FOLD);
         let mut direction = at.toward.clone();
         let mut length: f64 = 1.0;
         let mut last_energy = f64::INFINITY;

@@ -7,11 +7,8 @@ use super::Flow;
 use crate::Mesh;
 use crate::mesh::id::id;
 
-/// Share of its way to the middle of its neighbours that a point goes.
-const ROUNDING: f64 = 0.5;
-
 impl Flow<'_> {
-    /// A step of the points inside boundaries and on lines that some places depend on, toward the middle of their neighbours.
+    /// The way of the points inside boundaries and on lines that some places depend on to the middle of their neighbours.
     pub(super) fn rounding(&self, points: &[DVec3], places: &[Vec<u32>]) -> Vec<DVec3> {
         let mut moves = vec![DVec3::ZERO; points.len()];
         let Mesh::Triangles(mesh) = self.control_mesh() else { return moves };
@@ -34,7 +31,7 @@ impl Flow<'_> {
         for (place, by) in moves.iter_mut().enumerate() {
             // What lies within a line can move, also where all points on lines are corners.
             let moves_it = is_moved[place] && matches!(crease_counts[place], 0 | 2);
-            let step = *by * (ROUNDING / counts[place]);
+            let step = *by / counts[place];
             *by = if moves_it { self.freedom(id(place)).project(step) } else { DVec3::ZERO };
         }
         moves

@@ -11,8 +11,7 @@ use crate::mesh::rounding::{last_place, swept_by_rounding};
 use crate::mesh::volume::{VOLUME_LIMIT, VOLUME_RESTORED, largest_relative_error};
 use crate::{GrainId, Network, NetworkError, Volumes};
 
-/// Bounds on the factor by which a volume correction is larger than its gradient asks for.
-const SMALLEST_GAIN: f64 = 0.3;
+/// Most by which a volume correction is larger than its gradient asks for, or one over it smaller.
 const LARGEST_GAIN: f64 = 2.0;
 
 /// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
@@ -69,7 +68,7 @@ impl Flow<'_> {
             if let Some(last) = &last {
                 let left = dot(&missing, last) / dot(last, last);
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
-                gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
+                gain = (gain / (1.0 - left)).clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN);
             }
             if relative_error <= VOLUME_RESTORED || (stalled && is_rounding(self.network, &missing, &surface))
             {

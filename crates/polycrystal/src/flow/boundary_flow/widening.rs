@@ -14,10 +14,7 @@ use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Elements, Mesh, TriangleQuality, Volumes};
 
-/// Smallest angle, in units of the bound, of a triangle that stays as it is ...
-const GOOD: f64 = 1.1;
-
-/// ... and that which others are brought to: the volumes, which are made right after that, take some of it.
+/// Smallest angle, in units of the bound, that thin triangles are brought to: the volumes, which are made right after that, take some of it.
 const WIDE: f64 = 1.15;
 
 /// What moves to make triangles wider.
@@ -29,8 +26,8 @@ enum Moving {
     Lines,
 }
 
-/// What is tried, one after the other. What lines do to volumes is made right after that, and may take a second time.
-const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
+/// What is tried, one after the other.
+const TRIES: [Moving; 2] = [Moving::Inside, Moving::Lines];
 
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
@@ -73,13 +70,13 @@ impl Flow<'_> {
         if let Elements::Segments(_) = elements {
             return Vec::new();
         }
-        let good = sine(GOOD).powi(2);
+        let bound = sine(1.0).powi(2);
         let squared_sine =
             |triangle: u32| squared_sine(elements.points(triangle).map(|corner| surface[corner as usize]));
         let mut thin: Vec<(f64, u32)> = (0..id(elements.len()))
             .into_par_iter()
             .map(|triangle| (squared_sine(triangle), triangle))
-            .filter(|(squared_sine, _)| *squared_sine < good)
+            .filter(|(squared_sine, _)| *squared_sine < bound)
             .collect();
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         thin.into_iter().map(|(_, triangle)| triangle).collect()
