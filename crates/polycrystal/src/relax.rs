@@ -19,11 +19,7 @@ use crate::flow::recipe::Certified;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
 
-/// Time of one step toward equilibrium on the finest level that moves, in units of the mean grain size squared; in the plane, and on all
-/// coarser levels together, it is [`TIME_OF_KEPT_TOPOLOGY`]. Three times as much takes a tenth longer, and folds more of coarse meshes.
-const REST_STEP: f64 = 0.03;
-
-/// Most such steps.
+/// Most steps toward equilibrium on the finest level that moves.
 const REST_STEPS: usize = 200;
 
 /// Where the control points are before a relaxation.
@@ -204,8 +200,9 @@ fn relax_levels<T>(
     };
     let last_stage = match relaxation {
         Relaxation::Equilibrium => {
-            let share = if is_in_space { REST_STEP / TIME_OF_KEPT_TOPOLOGY } else { 1.0 };
-            let (step_time, least_gain) = (share * whole_time, Relaxation::LEAST_GAIN);
+            // As long as those on the control mesh. Twice as long takes a tenth longer, and folds more of coarse meshes.
+            let parts = if is_in_space { tuning.coarse_steps } else { 1 };
+            let (step_time, least_gain) = (whole_time / parts as f64, Relaxation::LEAST_GAIN);
             Stage { step_time, steps: REST_STEPS, least_gain, end: End::Finished }
         }
         Relaxation::Time(_) => timed(last, End::Finished),

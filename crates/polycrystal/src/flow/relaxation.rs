@@ -9,14 +9,14 @@ use crate::{Attempt, GrainId, Network, NetworkError};
 pub(crate) const TIME_OF_KEPT_TOPOLOGY: f64 = 0.3;
 
 /// Volume of a grain as a share of the mean below which it has shrunk to nothing.
-const LEAST_GRAIN: f64 = 1e-3;
+pub(crate) const LEAST_GRAIN: f64 = 1e-3;
 
 /// How to relax.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Relaxation {
     /// For a time under curvature flow with unit mobility, in units of the mean grain size squared; 0 leaves boundaries flat.
     Time(f64),
-    /// Until a step of time 0.03 (in the plane: 0.3) lessens the area by no more than [`Relaxation::LEAST_GAIN`] of it, or the residual of
+    /// Until a step of time 0.04 (in the plane: 0.3) lessens the area by no more than [`Relaxation::LEAST_GAIN`] of it, or the residual of
     /// Herring's condition has not fallen, by three hundredths, for three steps. The step at which it was least is the result.
     ///
     /// [`relax`](crate::relax()) lets no boundary vanish on the way and no neighbours switch, so this is the least area of this topology: where

@@ -1,5 +1,7 @@
 //! The tuned numbers of growth.
 
+use crate::flow::relaxation::LEAST_GRAIN;
+
 /// What growth is tuned by. Lengths are in units of the mean grain size at the time, the edge of a cube (in the plane, of a square) with the mean
 /// volume (area) of the grains that are left; times in units of its square, volumes in units of that volume.
 ///
@@ -29,7 +31,7 @@ impl Default for GrowthTuning {
             largest_error_in_plane: 3e-3,
             largest_error_in_space: 8e-4,
             short: 0.05,
-            vanished: 2e-3,
+            vanished: LEAST_GRAIN,
             smoothing: 0.05,
         }
     }

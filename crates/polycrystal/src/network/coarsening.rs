@@ -3,22 +3,18 @@
 use glam::DVec3;
 use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
+use crate::complex::ring::LARGEST_BEND;
+use crate::mesh::fold::{LARGEST_FOLD, is_folded};
 use crate::mesh::rounding;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::network::corners::{edges, is_cycle, seen_from, translation_of, with_corner_moved};
 
-/// How much a triangle may turn when one of its corners moves along an edge, or an edge of it flips, as the cosine of the angle: 60 degrees.
-const LEAST_COSINE: f64 = 0.5;
-
 /// Square of the sine of an angle (15 degrees): edges of thinner triangles are not made, but by a collapse that leaves no thinner ones than there were.
 const GOOD_SQUARED_SINE: f64 = 0.067;
 
-/// Share by which a flip has to make the square of the sine of the least angle larger, so that flips end.
-const LEAST_GAIN: f64 = 1e-3;
-
-/// Cosines of angles between the normals of two triangles at an edge that are not made, nor made less: inside a boundary folds by more than 72 degrees, between
-/// different ones angles below 26.
-const LEAST_COSINES: [f64; 2] = [0.3, -0.9];
+/// Cosines of angles between the normals of two triangles at an edge that are not made, nor made less: folds inside a boundary, and between
+/// different ones angles below 26 degrees.
+const LEAST_COSINES: [f64; 2] = [LARGEST_FOLD, -0.9];
 
 /// Triangles of less height, in parts of the length below which edges collapse, may turn as they will.
 const NARROW: f64 = 0.15;
@@ -374,7 +370,7 @@ impl Coarsening<'_> {
 
     fn lies_alike(&self, one: [PeriodicVertex; 3], other: [PeriodicVertex; 3]) -> bool {
         let [one, other] = [one, other].map(|corners| self.normal(corners));
-        one.dot(other) > LEAST_COSINE * one.length() * other.length()
+        !is_folded([one, other], LARGEST_BEND)
     }
 
     /// Whether a triangle is so narrow that how it lies says nothing: part of a step between two faces.
@@ -469,7 +465,7 @@ impl Coarsening<'_> {
             pair.into_iter().map(|corners| self.squared_sine(corners)).fold(f64::INFINITY, f64::min)
         });
         let is_alike = |new| self.lies_alike(one, new) && self.lies_alike(other, new);
-        if after <= before * (1.0 + LEAST_GAIN) || !is_alike(left) || !is_alike(right) {
+        if after <= before * (1.0 + rounding::OF_COSINES) || !is_alike(left) || !is_alike(right) {
             return false;
         }
         let right = right.map(|corner| corner.moved(apart));
