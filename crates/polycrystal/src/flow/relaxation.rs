@@ -28,8 +28,8 @@ impl Relaxation {
     /// Change of area with a step, as a share of the area, that counts as equilibrium.
     pub const LEAST_GAIN: f64 = 1e-6;
 
-    /// The usual time where the topology may change: eight steps with a look at what is short after each. The angles of random Voronoi
-    /// grains spread by 5 degrees instead of 24, and one point in two hundred joins more than four.
+    /// The usual time where the topology may change: five steps with a look at what is short after each. The angles of random Voronoi
+    /// grains spread by 4 degrees instead of 24, and one point in two hundred joins more than four.
     pub const USUAL: Self = Self::Time(1.2);
 
     /// The usual time where the topology stays, as of [`relax`](crate::relax()): the angles of random Voronoi grains spread by 7 degrees

@@ -11,11 +11,11 @@ use crate::network::build::FINEST_MOVED;
 pub struct Tuning {
     /// Longest time of a step in which cells come together and part. Short lines would shrink to nothing in less: what is left of them is still
     /// there, as a step lets none turn over. How near to equilibrium all comes depends on the number of steps more than on the time. With 0.15
-    /// angles spread by 4.0 degrees instead of 4.4, and 20 000 grains take a fifth longer; with 0.3 more points join five grains or more.
+    /// angles spread by 4.0 degrees instead of 4.5, and 20 000 grains take a fifth longer; with 0.3 more points join five grains or more.
     pub cell_step_time: f64,
     /// How many times as soft as in the cotangent Laplacian points are that three boundaries or more share. Area resists motion across a boundary
     /// alone, where the Laplacian resists in all directions alike: lines where three meet at 120 degrees resist half as much, quadruple points
-    /// a third as much. With 3, one network of forty folds; with 1 angles spread by 8.1 degrees instead of 4.4, and a flow to rest takes a quarter longer.
+    /// a third as much. With 3, one network of forty folds; with 1 angles spread by 8.1 degrees instead of 4.5, and a flow to rest takes a quarter longer.
     pub junction_softness: f64,
     /// Steps that the relaxation time is divided into on the control mesh. With five, networks of measured maps stay further from rest; ten leave
     /// angles as they are, and triangles thinner.
@@ -24,7 +24,7 @@ pub struct Tuning {
     /// of place does not become one again.
     pub fine_steps: usize,
     /// The same where grains have come together and parted before, and lines are nearly where they belong. How long they are does not matter.
-    /// Each one more takes a tenth of the whole time: angles spread by 4.4 degrees with two, 4.0 with three, 3.7 with four, 3.5 with six.
+    /// Each one more takes a tenth of the whole time: angles spread by 4.5 degrees with two, 4.1 with three, 3.9 with four, 3.6 with six.
     pub settled_steps: usize,
     /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles. Ten bring no more.
     pub forecast_steps: usize,
@@ -32,7 +32,7 @@ pub struct Tuning {
     /// what lattices need.
     pub forecast_factor: f64,
     /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends. With 1e-1
-    /// 35 triangles of 24 networks at rest are thin instead of none; 1e-2 takes a twentieth longer, and brings nothing.
+    /// or 1e-2 all is as good, and takes as long.
     pub tolerance: f64,
     /// Length below which a control edge no longer changes in a flow of a given time. 0 leaves some thin triangles and folds in the plane, twice as
     /// much spoils angles.
