@@ -9,7 +9,7 @@ use crate::{Attempt, GrainId, Network, NetworkError};
 pub(crate) const TIME_OF_KEPT_TOPOLOGY: f64 = 0.3;
 
 /// Volume of a grain as a share of the mean below which it has shrunk to nothing.
-pub(crate) const LEAST_GRAIN: f64 = 1e-3;
+const LEAST_GRAIN: f64 = 1e-3;
 
 /// How to relax.
 #[derive(Debug, Clone, Copy, PartialEq)]
