@@ -57,9 +57,12 @@ pub fn calculix(test: &str, folder: &Path, job: &str) -> Option<String> {
     Some(fs::read_to_string(folder.join(format!("{job}.dat"))).unwrap())
 }
 
-/// How far stresses may be from uniform in elements with curved edges, at the root of the mean square. The cause is the rule of four points: it integrates quadratic functions, and forces of a
-/// uniform stress are cubic where edges are curved. By a rule for cubic ones they balance to rounding, as `tetrahedra.py` checks. 48 networks had 1.7e-5 to 4.3e-5, and 2.3e-3 in the worst element.
-const CURVED: f64 = 1e-4;
+/// How far stresses may be from uniform in elements with curved edges. The cause is the rule of four points: it integrates quadratic functions, and forces of a uniform stress
+/// are cubic where edges are curved. By a rule for cubic ones they balance to rounding, as `tetrahedra.py` checks. 48 networks had 0.5e-3 to 2.3e-3, one of them above this.
+const CURVED: f64 = 2e-3;
+
+/// The same at the root of the mean square: these 48 networks had 1.7e-5 to 4.3e-5.
+const CURVED_MEAN: f64 = 1e-4;
 
 /// One material under a mean strain of all components: the stress is the same everywhere.
 fn check_periodic_patch(test: &str, mut config: Config, tolerance: f64) {
@@ -108,7 +111,7 @@ fn check_patch(test: &str, polycrystal: &Polycrystal, tolerance: f64) {
     check_stresses(polycrystal, &printed, [x.x, y.y, z.z, x.y, x.z, y.z], tolerance);
 }
 
-/// All stresses that CalculiX printed are the same, to a share of the first component at the root of the mean square.
+/// All stresses that CalculiX printed are the same, to a share of the first component, and nearer at the root of the mean square.
 fn check_stresses(polycrystal: &Polycrystal, printed: &str, exact: [f64; 6], tolerance: f64) {
     let (mut points, mut squares) = (0, 0.0);
     for line in printed.lines() {
@@ -116,6 +119,7 @@ fn check_stresses(polycrystal: &Polycrystal, printed: &str, exact: [f64; 6], tol
         let [_, _, stress @ ..] = &words[..] else { continue };
         if stress.len() == 6 {
             let errors = stress.iter().zip(exact).map(|(stress, component)| (stress - component) / exact[0]);
+            assert!(errors.clone().all(|error| error.abs() < tolerance), "{line} is not {exact:?}");
             squares += errors.map(|error| error * error).sum::<f64>();
             points += 1;
         }
@@ -123,7 +127,7 @@ fn check_stresses(polycrystal: &Polycrystal, printed: &str, exact: [f64; 6], tol
     let of_element = if polycrystal.file().volume.order == Some(2) { 4 } else { 1 };
     assert_eq!(points, of_element * polycrystal.volume_mesh.as_ref().unwrap().tetrahedra.len());
     let error = (squares / (6 * points) as f64).sqrt();
-    assert!(error < tolerance, "stresses are {error:.1e} off");
+    assert!(error < CURVED_MEAN, "stresses are {error:.1e} off");
 }
 
 /// A box between sides that stay plane, pulled along x: the stress is that of one direction everywhere.

@@ -1,7 +1,7 @@
 //! Surface Evolver's datafile: grains as bodies of fixed volume, walls as constraints, and tension as the network has it.
 //!
-//! Grains fill the domain, so that one volume follows from the others. Held as well, it makes Evolver's system singular: the last
-//! body goes without.
+//! Grains fill the domain, so that one volume follows from the others, and makes Evolver's system singular if it is held as well. On a
+//! torus Evolver leaves one out itself; between walls the last body goes without.
 //!
 //! <https://kenbrakke.com/evolver/html/datafile.htm>. It counts from 1, so grain 0 is body 1. A periodic network is one of
 //! Evolver's torus model: each point, edge and triangle once, and with each edge the number of periods that it crosses. An axis

@@ -17,7 +17,7 @@ pub struct Tuning {
     /// alone, where the Laplacian resists in all directions alike: lines where three meet at 120 degrees resist half as much, quadruple points
     /// a third as much. With 3, one network of forty folds; with 1 angles spread by 8.1 degrees instead of 4.5, and a flow to rest takes a quarter longer.
     pub junction_softness: f64,
-    /// Steps that the relaxation time is divided into on the control mesh. With five, networks of measured maps stay further from rest; ten leave
+    /// Steps that the relaxation time is divided into on the control mesh; those to rest are as long. With five, networks of measured maps stay further from rest; ten leave
     /// angles as they are, and triangles thinner.
     pub coarse_steps: usize,
     /// Steps that the same time is divided into once more on the next level, where less is left to do. With three, a honeycomb with points out

@@ -34,24 +34,29 @@ impl Flow<'_> {
     pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let start = points.to_vec();
         let mut attempts = Vec::new();
-        match self.restore_with(&self.with_short_edges(&self.copies, points), points) {
+        match self.restore_with(&self.with_short_edges(&self.copies, points), &start, points) {
             Err(error) if error.is_tangle() => {
                 error.give_up("restoring volumes, short edges rigid", &mut attempts);
             }
             result => return result,
         }
         points.copy_from_slice(&start);
-        self.restore_with(&self.copies, points).map_err(|error| error.after(attempts))
+        self.restore_with(&self.copies, &start, points).map_err(|error| error.after(attempts))
     }
 
-    fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
-        let start = points.to_vec();
+    /// The same for groups of points that move as one; `start` is where the points are.
+    fn restore_with(
+        &self,
+        groups: &TiedPoints,
+        start: &[DVec3],
+        points: &mut [DVec3],
+    ) -> Result<Vec<DVec3>, NetworkError> {
         // Where volumes are right already, nothing is asked of it.
         let response = LazyCell::new(|| {
             let groups = groups.number();
-            let terms = self.patches.terms(&start);
+            let terms = self.patches.terms(start);
             let response =
-                pressure_response(self.network, &self.patches, &terms, &self.unknowns(&start, &groups));
+                pressure_response(self.network, &self.patches, &terms, &self.unknowns(start, &groups));
             (groups, response)
         });
         let mut last: Option<Vec<f64>> = None;
