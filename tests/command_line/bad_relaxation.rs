@@ -10,6 +10,8 @@ fn a_free_grain_that_vanishes_is_named_with_a_time_that_works() {
         "--dim 2 --seeds 30 --seeding random -n 0 --free --regularize 0.05",
         // In space grains vanish, but for those of several cells.
         "--seeds 5 --phase a:0.9 --phase b:0.1,place=boundaries -n 0 --free",
+        // What was held of a grain that is folded once stayed for any time.
+        "--seeds 15 --rng-seed 4 -n 0 --free --regularize 0.05",
     ] {
         let too_long = format!("{grains} --relax 1");
         workplace.refuses(&too_long, FAILED, "grain ... works");

@@ -1,5 +1,6 @@
 //! Steps toward less energy: one system for the points of a level and for the fans of cells.
 
+pub(crate) mod adaptive_steps;
 pub(crate) mod assembly;
 pub(crate) mod balance;
 pub(crate) mod boundary_flow;

@@ -14,7 +14,8 @@ pub(crate) mod regular_cells;
 
 use glam::DVec3;
 
-use crate::flow::boundary_flow::{End, Flow, Grown, Stage, has_kept_volumes};
+use crate::flow::adaptive_steps::AdaptiveSteps;
+use crate::flow::boundary_flow::{End, Flow, Stage, has_kept_volumes};
 use crate::flow::recipe::Certified;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
@@ -165,21 +166,15 @@ fn relax_levels<T>(
     let whole_time = time * network.mean_grain_size().powi(2);
     if volumes == Volumes::Free {
         let begin = network.subdivide_between(0, last, control_points);
-        let mut steps = 0;
-        let mut show = |Grown { steps: done, left, passed, points }: Grown<'_>| {
-            steps = done;
-            let time = passed / network.mean_grain_size().powi(2);
-            watch(RelaxationStep {
-                done,
-                count: done + left,
-                time,
-                now: Moving::Points { level: last, points },
-            });
+        let mut done = 0;
+        let mut show = |steps: &AdaptiveSteps, points: &[DVec3]| {
+            done = steps.taken();
+            let now = Moving::Points { level: last, points };
+            watch(RelaxationStep { done, count: steps.count(), time: steps.time(), now });
         };
-        show(Grown { steps: 0, left: 1, passed: 0.0, points: &begin });
         // Grains grow for the time that was asked for, not once more on each level.
-        let points = flow(last).grow(&begin, whole_time, &mut show)?;
-        return accepted(Relaxed { steps, time, ..Relaxed::new(last, points) });
+        let points = flow(last).grow(&begin, time, &mut show)?;
+        return accepted(Relaxed { steps: done, time, ..Relaxed::new(last, points) });
     }
     let (first, first_steps) = match (start, relaxation) {
         (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.settled_steps),

@@ -14,7 +14,6 @@ use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::FaceId;
-use voronoi::Dimension;
 
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
@@ -29,7 +28,7 @@ use crate::mesh::adjacency::Adjacency;
 use crate::solver::conjugate_gradients::dot;
 use crate::{GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
-pub(crate) use growth::{Grown, change_of_step};
+pub(crate) use growth::LEAST_GRAIN;
 use level_elements::{LevelElements, LevelSectors};
 use step::Taken;
 pub(crate) use volumes::has_kept_volumes;
@@ -150,7 +149,7 @@ impl<'a> Flow<'a> {
         let mut surface = self.refined(&points);
         for step in 1..=stage.steps {
             check_cancelled();
-            let Taken { energy, broken } = self.step(&mut points, &mut surface, stage.step_time)?;
+            let Taken { energy, broken } = self.take_step(&mut points, &mut surface, stage.step_time)?;
             broken.iter().for_each(|points| self.tied.join_all(points));
             progress(step, &points);
             if stage.least_gain > 0.0
@@ -234,19 +233,6 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// The grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
-    /// disc for r^2 / 2.
-    fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
-        let volumes = self.volumes_at(points);
-        let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let dimension = self.network.domain().dimension();
-        let radius = 0.5 * dimension.ball_diameter(volume);
-        let lifetime = radius * radius / if dimension == Dimension::Two { 2.0 } else { 4.0 };
-        let time = (passed + lifetime.max(0.0)) / self.network.mean_grain_size().powi(2);
-        let is_vanishing = volume <= 0.0 || lifetime <= step_time;
-        is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
-    }
-
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
     fn defects(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
@@ -323,11 +309,6 @@ impl<'a> Flow<'a> {
     /// The points of the level that carries the flow.
     fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
         self.network.subdivide_between(self.level, self.surface, points)
-    }
-
-    /// The volumes of grains on that level.
-    fn volumes_at(&self, points: &[DVec3]) -> Vec<f64> {
-        self.network.grain_volumes(self.surface(), &self.refined(points))
     }
 
     /// The points of the finest level.

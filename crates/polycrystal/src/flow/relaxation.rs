@@ -3,13 +3,10 @@
 use glam::DVec3;
 use voronoi::Tessellation;
 
-use crate::{Attempt, GrainId, Network, NetworkError};
+use crate::{Attempt, Network, NetworkError};
 
 /// The usual relaxation time where the topology stays, in units of the mean grain size squared.
 pub(crate) const TIME_OF_KEPT_TOPOLOGY: f64 = 0.3;
-
-/// Volume of a grain as a share of the mean below which it has shrunk to nothing.
-const LEAST_GRAIN: f64 = 1e-3;
 
 /// How to relax.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,22 +106,5 @@ impl Relaxed {
             return network.divide(&self.points);
         }
         network.subdivide_between(self.level, network.level_count(), &self.points)
-    }
-}
-
-/// Checks that no grain has shrunk to nothing by a time: it would have to vanish, and its neighbours to meet, for others to grow on as
-/// they do.
-pub(crate) fn check_grains_are_left(
-    network: &Network,
-    volumes: &[f64],
-    time: f64,
-) -> Result<(), NetworkError> {
-    let least = LEAST_GRAIN * network.domain().measure() / volumes.len() as f64;
-    match (0u32..).zip(volumes).find(|(_, volume)| volume.is_nan() || **volume < least) {
-        Some((grain, _)) => {
-            let time = time / network.mean_grain_size().powi(2);
-            Err(NetworkError::GrainVanished { grain: GrainId(grain), time })
-        }
-        None => Ok(()),
     }
 }

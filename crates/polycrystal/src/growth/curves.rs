@@ -10,6 +10,7 @@ use super::tuning::GrowthTuning;
 use crate::arcs::switching::CurvedEdges;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::events::reconnection::Reconnections;
+use crate::flow::adaptive_steps::Evolution;
 use crate::flow::recipe::{Certified, RelaxedCells};
 use crate::{CellComplex, Mesh, Network, NetworkError, Relaxed, Volumes};
 
@@ -35,16 +36,8 @@ pub(super) struct Curves<'a> {
     moving: (Vec<FaceId>, CurveNetwork),
 }
 
-impl Front for Curves<'_> {
+impl Evolution for Curves<'_> {
     type Points = Positions;
-
-    fn start(&mut self, mean: f64) -> Positions {
-        let spacing = self.tuning.spacing * mean.sqrt();
-        self.resample(spacing);
-        let positions;
-        (self.moving.0, self.moving.1, positions) = self.moving(spacing);
-        positions
-    }
 
     fn step(&self, start: &Positions, time: f64) -> Result<Positions, NetworkError> {
         Ok(self.moving.1.step(start, time))
@@ -56,6 +49,16 @@ impl Front for Curves<'_> {
 
     fn volumes(&self, points: &Positions) -> Vec<f64> {
         self.areas(&self.moving.0, points)
+    }
+}
+
+impl Front for Curves<'_> {
+    fn start(&mut self, mean: f64) -> Positions {
+        let spacing = self.tuning.spacing * mean.sqrt();
+        self.resample(spacing);
+        let positions;
+        (self.moving.0, self.moving.1, positions) = self.moving(spacing);
+        positions
     }
 
     fn take(&mut self, points: Positions) {

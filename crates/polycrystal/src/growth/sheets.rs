@@ -12,6 +12,7 @@ use crate::energy::shape::Shape;
 use crate::energy::sides::boundary;
 use crate::events::local_area::Conditions;
 use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
+use crate::flow::adaptive_steps::Evolution;
 use crate::flow::fan_flow::{FanFlow, Motion};
 use crate::flow::recipe::RelaxedCells;
 use crate::flow::relaxation::{Relaxation, Relaxed, TIME_OF_KEPT_TOPOLOGY};
@@ -144,15 +145,8 @@ impl<'a> Sheets<'a> {
     }
 }
 
-impl Front for Sheets<'_> {
+impl Evolution for Sheets<'_> {
     type Points = Vec<DVec3>;
-
-    fn start(&mut self, _: f64) -> Vec<DVec3> {
-        let mut points = self.points.clone();
-        self.flow().center(&mut points);
-        self.before = self.complex.vertices.clone();
-        points
-    }
 
     fn step(&self, start: &Vec<DVec3>, time: f64) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.clone();
@@ -179,6 +173,15 @@ impl Front for Sheets<'_> {
 
     fn volumes(&self, points: &Vec<DVec3>) -> Vec<f64> {
         self.fans.volumes(self.complex.cell_count(), points, &self.fans.normals(points))
+    }
+}
+
+impl Front for Sheets<'_> {
+    fn start(&mut self, _: f64) -> Vec<DVec3> {
+        let mut points = self.points.clone();
+        self.flow().center(&mut points);
+        self.before = self.complex.vertices.clone();
+        points
     }
 
     fn take(&mut self, points: Vec<DVec3>) {

@@ -1,5 +1,7 @@
 //! The tuned numbers of growth.
 
+use crate::flow::boundary_flow::LEAST_GRAIN;
+
 /// What growth is tuned by. Lengths are in units of the mean grain size at the time, the edge of a cube (in the plane, of a square) with the mean
 /// volume (area) of the grains that are left; times in units of its square, volumes in units of that volume.
 ///
@@ -16,8 +18,7 @@ pub struct GrowthTuning {
     pub largest_error_in_space: f64,
     /// Length of an edge in the plane that shrinks, below which its ends switch neighbours.
     pub short: f64,
-    /// Volume of a grain below which it vanishes: with three sides it would last in the plane for a third of that. With half of it, growth of 374 grains
-    /// in space to 167 takes 1.4 times as long.
+    /// Volume of a grain below which it vanishes.
     pub vanished: f64,
     /// Time for which the finer points of boundaries in space move in the end, at kept volumes.
     pub smoothing: f64,
@@ -30,7 +31,7 @@ impl Default for GrowthTuning {
             largest_error_in_plane: 3e-3,
             largest_error_in_space: 8e-4,
             short: 0.05,
-            vanished: 2e-3,
+            vanished: LEAST_GRAIN,
             smoothing: 0.05,
         }
     }

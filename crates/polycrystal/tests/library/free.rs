@@ -108,7 +108,7 @@ fn a_grain_that_shrinks_to_nothing_is_named() {
 /// the rate at a time of 0.03.
 #[test]
 fn balls_and_discs_shrink_by_their_curvature_until_nothing_is_left() {
-    let radius = 0.3;
+    let radius = 0.45;
     for resolution in 2..=4 {
         let (points, triangles) = ball(radius, DVec3::splat(0.5), resolution);
         let (network, start) = Labelled::inclusion(&points, &triangles).network(1).expect("a ball");

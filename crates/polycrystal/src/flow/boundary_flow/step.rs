@@ -31,7 +31,7 @@ impl Flow<'_> {
     ///
     /// # Errors
     /// [`NetworkError::Folded`]
-    pub(super) fn step(
+    pub(super) fn take_step(
         &self,
         points: &mut Vec<DVec3>,
         surface: &mut Vec<DVec3>,
@@ -155,6 +155,7 @@ mod tests {
     use voronoi::{Domain, Tessellation};
 
     use super::*;
+    use crate::flow::adaptive_steps::Evolution;
     use crate::{GrainId, Junctions, Network, Tuning, Volumes};
 
     /// Six cells around one in the middle of a cube, a hundredth of its width, and one beside each wall. The one in the middle is the last.
@@ -187,7 +188,7 @@ mod tests {
     fn points_that_stay_behind_follow_their_small_grain() {
         let (network, start) = cluster();
         let flow = flow(&network);
-        let volume = |points: &[DVec3]| flow.volumes_at(points)[GrainId(12).index()];
+        let volume = |points: &Vec<DVec3>| flow.volumes(points)[GrainId(12).index()];
         let own = points_in_the_middle(&start);
         let mut points = start.clone();
         own[2..].iter().for_each(|point| points[*point as usize] += DVec3::X * 0.2);
