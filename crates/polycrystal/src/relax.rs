@@ -28,7 +28,8 @@ const REST_STEPS: usize = 200;
 enum Start {
     /// On the flat cells: coarse levels go first.
     Flat,
-    /// Nearly where the control mesh has them at rest: a given time passes on the finest level that moves alone.
+    /// Nearly where the control mesh has them at rest: a given time passes on the finest level that moves alone, and before the flow to rest on
+    /// the level before it.
     Relaxed,
 }
 
@@ -178,7 +179,8 @@ fn relax_levels<T>(
     }
     let (first, first_steps) = match (start, relaxation) {
         (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.settled_steps),
-        _ => (0, tuning.coarse_steps),
+        (Start::Relaxed, Relaxation::Equilibrium) => (last.saturating_sub(1), tuning.settled_steps),
+        (Start::Flat, _) => (0, tuning.coarse_steps),
     };
     let count = first_steps + (last - first) * tuning.fine_steps;
     watch(RelaxationStep {

@@ -23,7 +23,8 @@ pub struct Tuning {
     /// Steps that the same time is divided into once more on the next level, where less is left to do. With three, a honeycomb with points out
     /// of place does not become one again.
     pub fine_steps: usize,
-    /// The same where grains have come together and parted before, and lines are nearly where they belong. How long they are does not matter.
+    /// The same where grains have come together and parted before, and lines are nearly where they belong: on the finest level that moves, or before
+    /// a flow to rest on the level before it. How long they are does not matter.
     /// Each one more takes a tenth of the whole time: angles spread by 4.5 degrees with two, 4.1 with three, 3.9 with four, 3.6 with six.
     pub settled_steps: usize,
     /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles. Ten bring no more.
