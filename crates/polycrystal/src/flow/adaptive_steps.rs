@@ -1,6 +1,7 @@
 //! Steps as long as the error of volumes allows.
 
 use cancellation::check_cancelled;
+use glam::DVec3;
 
 use crate::{GrainId, NetworkError};
 
@@ -26,6 +27,11 @@ pub(crate) trait Evolution {
 
     /// The volume of each grain, in the plane its area.
     fn volumes(&self, points: &Self::Points) -> Vec<f64>;
+}
+
+/// Where points go that two steps of half the time and one of the whole time have led to.
+pub(crate) fn extrapolated(halves: &[DVec3], whole: &[DVec3]) -> Vec<DVec3> {
+    halves.iter().zip(whole).map(|(halves, whole)| *halves + (*halves - *whole)).collect()
 }
 
 /// Steps through a time.

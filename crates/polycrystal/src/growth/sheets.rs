@@ -12,7 +12,7 @@ use crate::energy::shape::Shape;
 use crate::energy::sides::boundary;
 use crate::events::local_area::Conditions;
 use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
-use crate::flow::adaptive_steps::Evolution;
+use crate::flow::adaptive_steps::{Evolution, extrapolated};
 use crate::flow::fan_flow::{FanFlow, Motion};
 use crate::flow::recipe::RelaxedCells;
 use crate::flow::relaxation::{Relaxation, Relaxed, TIME_OF_KEPT_TOPOLOGY};
@@ -155,8 +155,7 @@ impl Evolution for Sheets<'_> {
     }
 
     fn extrapolated(&self, start: &Vec<DVec3>, halves: Vec<DVec3>, whole: &Vec<DVec3>) -> Vec<DVec3> {
-        let beyond = |(halves, whole): (&DVec3, &DVec3)| *halves + (*halves - *whole);
-        let mut end: Vec<DVec3> = halves.iter().zip(whole).map(beyond).collect();
+        let mut end = extrapolated(&halves, whole);
         loop {
             // What goes too far that way stays where the halves lead.
             let mut is_changed = false;
