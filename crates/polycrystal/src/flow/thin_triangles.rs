@@ -23,9 +23,12 @@ const NO_AREA: f64 = 1e-3;
 /// Most steps down the gradient; most places take some ten. Much longer searches make of rounding what can be seen.
 pub(crate) const STEPS: usize = 100;
 
-/// So many steps in a row that lessen the energy by less than the share below lead nowhere: a line is too short, or a corner too sharp.
+/// So many steps in a row that make no angle wider lead nowhere: a line is too short, or a corner too sharp.
 const PATIENCE: usize = 20;
-const LEAST_GAIN: f64 = 0.02;
+
+/// Share of the wanted sine from which on points move although it is not reached. The least gains would cost as much: they move lines, and with
+/// them angles between boundaries.
+const WORTH: f64 = 0.5;
 
 /// Times that a step is halved before it counts as one that leads nowhere.
 const HALVINGS: usize = 20;
@@ -47,6 +50,14 @@ pub(crate) struct Room {
     triangles: Vec<[u32; 3]>,
     /// Where each triangle faces at first.
     facing: Vec<DVec3>,
+}
+
+/// What a search has found.
+pub(crate) struct Widened {
+    /// Where points go, by number in the network; none where that was no use.
+    pub(crate) points: Vec<(u32, DVec3)>,
+    /// Steps that were taken.
+    pub(crate) steps: usize,
 }
 
 /// A point that can move.
@@ -114,22 +125,18 @@ impl Room {
         }
     }
 
-    /// Where the points go so that no triangle has an angle whose sine is below `wanted`; nothing if they do not come so far, as where
-    /// a line is too short, within so many steps.
-    pub(crate) fn widened(&self, wanted: f64, steps: usize) -> Option<Vec<(u32, DVec3)>> {
+    /// Where the points go so that no triangle has an angle whose sine is below `wanted`, or as near to that as they come in so many steps if
+    /// that is worth it.
+    pub(crate) fn widened(&self, wanted: f64, most_steps: usize) -> Widened {
         let mut points = self.start.clone();
         let mut at = self.distortion(&points);
         let bend = at.least_cosine.min(LARGEST_FOLD);
+        let (mut widest, mut best) = (at.least_sine, None);
+        let (mut steps, mut last_gain) = (0, 0);
         let mut direction = at.toward.clone();
         let mut length: f64 = 1.0;
-        let mut last_energy = f64::INFINITY;
-        for step in 0..steps {
-            if step % PATIENCE == 0 {
-                if at.energy > (1.0 - LEAST_GAIN) * last_energy {
-                    return None;
-                }
-                last_energy = at.energy;
-            }
+        while widest < wanted && steps < most_steps.min(last_gain + PATIENCE) {
+            steps += 1;
             let mut gain = dot(&at.descent, &direction);
             if gain <= 0.0 {
                 direction.clone_from(&at.toward);
@@ -145,10 +152,9 @@ impl Room {
                 length *= if is_lower { 1.0 } else { 0.5 };
                 is_lower.then_some((moved, there))
             });
-            let (moved, there) = lower?;
-            if there.least_sine >= wanted && there.least_cosine >= bend {
-                let places = self.movable.iter().map(|point| point.place as usize);
-                return Some(places.map(|place| (self.points[place], moved[place])).collect());
+            let Some((moved, there)) = lower else { break };
+            if there.least_sine > widest && there.least_cosine >= bend {
+                (widest, best, last_gain) = (there.least_sine, Some(moved.clone()), steps);
             }
             // Conjugate directions (Polak and Ribiere).
             let change = dot(&there.descent, &there.toward) - dot(&at.descent, &there.toward);
@@ -157,7 +163,10 @@ impl Room {
                 there.toward.iter().zip(&direction).map(|(toward, last)| *toward + *last * kept).collect();
             (points, at) = (moved, there);
         }
-        None
+        let places = self.movable.iter().map(|point| point.place as usize);
+        let moved = |points: Vec<DVec3>| places.map(|place| (self.points[place], points[place])).collect();
+        let best = best.filter(|_| widest >= WORTH * wanted);
+        Widened { points: best.map(moved).unwrap_or_default(), steps }
     }
 
     /// The points of all levels, up to the finest.
@@ -313,11 +322,17 @@ mod tests {
         let after = room.distortion(&room.start).least_sine;
         assert!(after < 0.5 * before, "{after} {before}");
         let wanted = 0.9 * before;
-        let moved = room.widened(wanted, STEPS).expect("room enough");
-        for (point, place) in moved {
-            let place_of = room.points.iter().position(|other| *other == point).expect("one of them");
-            room.start[place_of] = place;
-        }
-        assert!(room.distortion(&room.start).least_sine >= wanted);
+        let mut go = |wanted| {
+            for (point, place) in room.widened(wanted, STEPS).points {
+                let place_of = room.points.iter().position(|other| *other == point).expect("one of them");
+                room.start[place_of] = place;
+            }
+            room.distortion(&room.start).least_sine
+        };
+        let [reached, wider, as_wide] = [wanted, 1.9 * wanted, 1.0].map(&mut go);
+        assert!(reached >= wanted, "{reached} {wanted}");
+        // As wide as there is room for, and no farther for a gain that is not worth it.
+        assert!(wider > reached && wider < 1.9 * wanted, "{wider} {reached}");
+        assert_eq!(as_wide, wider);
     }
 }

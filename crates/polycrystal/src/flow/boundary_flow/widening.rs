@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use subzero::VertexRule;
 
 use crate::flow::boundary_flow::{Flow, LevelSectors, Room};
-use crate::flow::thin_triangles::STEPS;
+use crate::flow::thin_triangles::{STEPS, Widened};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
@@ -26,42 +26,56 @@ enum Moving {
     Lines,
 }
 
-/// What is tried, one after the other.
-const TRIES: [Moving; 2] = [Moving::Inside, Moving::Lines];
-
 impl Flow<'_> {
-    /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
+    /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level. Points on lines move as long
+    /// as that leaves fewer of them.
     pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, surface: Vec<DVec3>, finest: &LevelSectors<'_>) {
         // Where grains grow, what that does to volumes would count as growth.
-        let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
-        let tries = if widens { TRIES.as_slice() } else { &[] };
+        if self.volumes != Volumes::Kept {
+            return;
+        }
         let mut thin = self.thin_triangles(&surface);
         // What is tried has a surface of its own: on the finest level there is room for one.
         drop(surface);
-        for moving in tries.iter().copied() {
+        let mut budget = self.tuning.widening * self.network.levels()[self.level].element_count() as f64;
+        let mut moving = Moving::Inside;
+        loop {
             let movable = self.movable_points(&thin, moving);
-            if movable.is_empty() {
-                break;
-            }
             check_cancelled();
             let mut moved = points.clone();
-            if !self.widen(&mut moved, &movable) {
-                continue;
+            if !self.widen(&mut moved, &movable, &mut budget) {
+                break;
             }
-            for _ in 0..2 {
-                let mut right = moved.clone();
-                let Ok(restored) = self.restored(&mut right) else { break };
-                let folded = self.folded_places(&restored, finest).concat();
-                if folded.is_empty() {
-                    (*points, thin) = (right, self.thin_triangles(&restored));
-                    break;
-                }
-                // Where that folds all stays as it was.
-                for group in movable.iter().filter(|group| folded.iter().any(|point| group.contains(point))) {
-                    group.iter().for_each(|point| moved[*point as usize] = points[*point as usize]);
-                }
+            let Some((right, restored)) = self.unfolded(points, moved, &movable, finest) else { break };
+            *points = right;
+            let before = std::mem::replace(&mut thin, self.thin_triangles(&restored)).len();
+            if moving == Moving::Lines && thin.len() >= before {
+                break;
+            }
+            moving = Moving::Lines;
+        }
+    }
+
+    /// Points that moved, with the volumes made right, and the finest level; groups of them stay where they were if that folds.
+    fn unfolded(
+        &self,
+        points: &[DVec3],
+        mut moved: Vec<DVec3>,
+        groups: &[Vec<u32>],
+        finest: &LevelSectors<'_>,
+    ) -> Option<(Vec<DVec3>, Vec<DVec3>)> {
+        for _ in 0..2 {
+            let mut right = moved.clone();
+            let restored = self.restored(&mut right).ok()?;
+            let folded = self.folded_places(&restored, finest).concat();
+            if folded.is_empty() {
+                return Some((right, restored));
+            }
+            for group in groups.iter().filter(|group| folded.iter().any(|point| group.contains(point))) {
+                group.iter().for_each(|point| moved[*point as usize] = points[*point as usize]);
             }
         }
+        None
     }
 
     /// Triangles of the finest level, the thinnest first: no order that depends on numbers.
@@ -116,8 +130,9 @@ impl Flow<'_> {
         groups
     }
 
-    /// Moves groups of points so that the triangles around are wide; tells whether that was any help.
-    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>]) -> bool {
+    /// Moves groups of points so that the triangles around are wide; tells whether that was any help. The budget counts the triangles of the level that
+    /// may be looked at.
+    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], budget: &mut f64) -> bool {
         let level = &self.network.levels()[self.level];
         let elements = BoundaryElements::of_level(level, self.network.boundaries().len());
         let boundaries_around = |movable: &Vec<u32>| {
@@ -141,19 +156,23 @@ impl Flow<'_> {
             turns.resize_with(turns.len().max(turn + 1), Vec::new);
             turns[turn].push((movable, around));
         }
-        let share = self.tuning.widening * level.element_count() as f64 / work as f64;
-        let steps = (1..=STEPS).take_while(|steps| *steps as f64 <= share).last().unwrap_or(0);
+        let work = work as f64;
+        let most_steps = (0..=STEPS).take_while(|steps| *steps as f64 * work <= *budget).last().unwrap_or(0);
         let mut is_wider = false;
         for groups in turns {
             let widened = |(movable, around): (&Vec<u32>, Vec<u32>)| {
                 check_cancelled();
+                let size = around.len();
                 let room = Room::new(self.network, self.level, around, movable, points)?;
-                room.widened(sine(WIDE), steps)
+                Some((size, room.widened(sine(WIDE), most_steps)))
             };
-            let moved: Vec<Vec<(u32, DVec3)>> = groups.into_par_iter().filter_map(widened).collect();
-            is_wider |= !moved.is_empty();
-            for (point, place) in moved.into_iter().flatten() {
-                points[point as usize] = place;
+            let widened: Vec<(usize, Widened)> = groups.into_par_iter().filter_map(widened).collect();
+            for (size, widened) in widened {
+                *budget -= (widened.steps * size) as f64;
+                is_wider |= !widened.points.is_empty();
+                for (point, place) in widened.points {
+                    points[point as usize] = place;
+                }
             }
         }
         level.copies.place(self.network.domain(), points);
