@@ -430,7 +430,7 @@ impl Coarsening<'_> {
         all.windows(2).all(|pair| pair[0] != pair[1]) && rims.all(is_cycle)
     }
 
-    /// Flips edges inside boundaries that make the least angle of their two triangles larger, and returns how many.
+    /// Flips edges inside boundaries where that takes an ear away or makes the least angle of the two triangles larger, and makes no ear. Returns how many.
     fn flip_edges(&mut self) -> usize {
         self.sweep += 1;
         let mut flipped = 0;
@@ -442,6 +442,12 @@ impl Coarsening<'_> {
             flipped += usize::from(flip.is_some());
         }
         flipped
+    }
+
+    /// Whether a triangle's two edges at a corner are of one line, which goes straight on there when it is smooth.
+    fn is_ear(&self, tip: PeriodicVertex, others: [PeriodicVertex; 2]) -> bool {
+        others.iter().all(|other| !self.is_inside([tip, *other]))
+            && matches!(self.part(tip.vertex), Part::Line(_))
     }
 
     fn flip(&mut self, ends: [PeriodicVertex; 2]) -> bool {
@@ -465,7 +471,15 @@ impl Coarsening<'_> {
             pair.into_iter().map(|corners| self.squared_sine(corners)).fold(f64::INFINITY, f64::min)
         });
         let is_alike = |new| self.lies_alike(one, new) && self.lies_alike(other, new);
-        if after <= before * (1.0 + rounding::OF_COSINES) || !is_alike(left) || !is_alike(right) {
+        let is_wider = after > before * (1.0 + rounding::OF_COSINES);
+        let has_ear = |tips: [PeriodicVertex; 2], beside: [PeriodicVertex; 2]| {
+            tips.iter().any(|tip| self.is_ear(*tip, beside))
+        };
+        if !is_wider && !has_ear([top, bottom], [from, to])
+            || !is_alike(left)
+            || !is_alike(right)
+            || has_ear([from, to], [top, bottom])
+        {
             return false;
         }
         let right = right.map(|corner| corner.moved(apart));
