@@ -326,10 +326,13 @@ fn smoothing(draw: &mut Draw, domain: &Domain, count: u32, limits: Limits, optio
 
 fn angle_class(domain: &Domain, options: &Options) -> AngleClass {
     let is_off = |name| options.value(name) == Some("0");
+    // Lamellae are planes unless a time is given.
+    let are_lamellae = options.values("inside").iter().any(|pattern| pattern.starts_with("lamellae"));
+    let is_flat = is_off("relax") || are_lamellae && !options.has("relax");
     let is_equilibrium = options.value("relax") == Some("equilibrium");
     match domain.sides.len() {
         2 => AngleClass::Plane,
-        _ if is_off("relax") || is_off("regularize") => AngleClass::Unregularized,
+        _ if is_flat || is_off("regularize") => AngleClass::Unregularized,
         _ if options.has("grain-shapes") => AngleClass::Shapes,
         _ if domain.is_cut => AngleClass::Cut,
         _ if is_equilibrium => AngleClass::Equilibrium,
