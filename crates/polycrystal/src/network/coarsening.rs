@@ -444,7 +444,7 @@ impl Coarsening<'_> {
         flipped
     }
 
-    /// Whether a triangle's two edges at a corner are of one line, which goes straight on there when it is smooth.
+    /// Whether a triangle's two edges at a corner are of one line: where that becomes smooth, the triangle has no area.
     fn is_ear(&self, tip: PeriodicVertex, others: [PeriodicVertex; 2]) -> bool {
         others.iter().all(|other| !self.is_inside([tip, *other]))
             && matches!(self.part(tip.vertex), Part::Line(_))

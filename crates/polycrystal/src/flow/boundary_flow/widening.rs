@@ -39,17 +39,18 @@ impl Flow<'_> {
         drop(surface);
         let mut budget = self.tuning.widening * self.network.levels()[self.level].element_count() as f64;
         let mut moving = Moving::Inside;
-        loop {
-            let movable = self.movable_points(&thin, moving);
+        while !thin.is_empty() {
             check_cancelled();
+            let count = thin.len();
+            let movable = self.movable_points(&thin, moving);
             let mut moved = points.clone();
-            if !self.widen(&mut moved, &movable, &mut budget) {
-                break;
+            if self.widen(&mut moved, &movable, &mut budget)
+                && let Some((right, restored)) = self.unfolded(points, moved, &movable, finest)
+            {
+                *points = right;
+                thin = self.thin_triangles(&restored);
             }
-            let Some((right, restored)) = self.unfolded(points, moved, &movable, finest) else { break };
-            *points = right;
-            let before = std::mem::replace(&mut thin, self.thin_triangles(&restored)).len();
-            if moving == Moving::Lines && thin.len() >= before {
+            if moving == Moving::Lines && thin.len() >= count {
                 break;
             }
             moving = Moving::Lines;
