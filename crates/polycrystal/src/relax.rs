@@ -164,7 +164,6 @@ fn relax_levels<T>(
         return accepted(Relaxed { is_flat, ..Relaxed::new(0, points) });
     }
     let last = network.level_count().min(finest);
-    let whole_time = time * network.mean_grain_size().powi(2);
     if volumes == Volumes::Free {
         let begin = network.subdivide_between(0, last, control_points);
         let mut done = 0;
@@ -177,6 +176,7 @@ fn relax_levels<T>(
         let points = flow(last).grow(&begin, time, &mut show)?;
         return accepted(Relaxed { steps: done, time, ..Relaxed::new(last, points) });
     }
+    let whole_time = time * network.mean_grain_size().powi(2);
     let (first, first_steps) = match (start, relaxation) {
         (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.settled_steps),
         (Start::Relaxed, Relaxation::Equilibrium) => (last.saturating_sub(1), tuning.settled_steps),

@@ -159,6 +159,9 @@ impl Flow<'_> {
         }
         let work = work as f64;
         let most_steps = (0..=STEPS).take_while(|steps| *steps as f64 * work <= *budget).last().unwrap_or(0);
+        if most_steps == 0 {
+            return false;
+        }
         let mut is_wider = false;
         for groups in turns {
             let widened = |(movable, around): (&Vec<u32>, Vec<u32>)| {
