@@ -10,7 +10,7 @@ const PYRAMID: &str =
 
 fn cells(workplace: &Workplace, arguments: &str) -> Vec<Value> {
     workplace.run(&format!("{arguments} --no-mesh --cells-json cells.json"));
-    let table: Value = serde_json::from_slice(&workplace.bytes("cells.json")).unwrap();
+    let table = workplace.json("cells.json");
     table["cells"].as_array().unwrap().clone()
 }
 
@@ -55,7 +55,7 @@ fn no_triangle_is_thin_beside_the_facets_of_a_cylinder() {
         workplace.run(&format!(
             "--domain cylinder --seeds 20 --rng-seed {seed} --relax equilibrium -n 2 -o a.vtp --json-summary a.json"
         ));
-        let summary: Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let summary = workplace.json("a.json");
         let least = summary["triangle_angles"]["least"].as_f64().unwrap();
         assert!(least >= 1.5, "{least}");
     }

@@ -38,7 +38,7 @@ fn grains_that_vanish_leave_the_volumes_of_others_exact() {
         "--dim 2 --seeds 30 --seeding random --rng-seed 3 --free -n 1 --elements-per-grain 2 -o a.vtp --json-summary a.json",
     );
     assert!(said.contains("vanished "), "{said}");
-    let record: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+    let record = workplace.json("a.json");
     assert!(record["largest_relative_volume_error"].as_f64().unwrap() < 1e-12, "{record}");
 }
 
@@ -57,7 +57,7 @@ fn short_lines_become_points_where_asked_and_are_named() {
         let said = workplace.run(&format!("{options} --small-features merge -o b.vtp"));
         assert!(said.contains("\nmerged      ") && !kept.contains("\nmerged "), "{said}");
         assert!(count(&said) < count(&kept), "{said}");
-        let record: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let record = workplace.json("a.json");
         let merged = record["element_size"]["merged_lines"].as_array().unwrap();
         assert!(!merged.is_empty());
         assert!(merged.iter().all(|line| line["grains"].as_array().unwrap().len() >= 3), "{merged:?}");

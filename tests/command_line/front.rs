@@ -28,7 +28,7 @@ fn dry_run_knows_how_fine_arcs_are() {
         assert!(foretold.contains("\nsegments    about "), "{foretold}");
         let segments = foretold.split_once("segments    about ").unwrap().1.split_once('\n').unwrap().0;
         workplace.run(&format!("{arguments} --json-summary run.json"));
-        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let run = workplace.json("run.json");
         let share = segments.parse::<f64>().unwrap() / run["elements"].as_f64().unwrap();
         assert!((0.8..1.25).contains(&share), "{foretold}, but {}", run["elements"]);
     }
@@ -47,7 +47,7 @@ fn dry_run_foretells_elements_of_a_size() {
             line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
         };
         workplace.run(&format!("{arguments} --json-summary run.json"));
-        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let run = workplace.json("run.json");
         let is_near = |foretold: f64, made: &Value| (foretold / made.as_f64().unwrap() - 1.0).abs() < 0.2;
         assert!(is_near(number(elements), &run["elements"]), "{foretold} {}", run["elements"]);
         if elements == "segments" {
@@ -77,7 +77,7 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         let name = arguments.split(' ').next_back().unwrap();
         assert!(!workplace.path(name).exists(), "{arguments}");
         let said = workplace.run(&format!("{arguments} --json-summary run.json"));
-        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let run = workplace.json("run.json");
         let number = |line: &str| -> u64 {
             let line = foretold.lines().find(|text| text.starts_with(line)).unwrap();
             line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()

@@ -11,7 +11,7 @@ use crate::workplace::{FAILED, Workplace};
 
 /// Number in the file and volume (in the plane: area) of each grain.
 fn grains(workplace: &Workplace, name: &str) -> Vec<(u64, f64)> {
-    let statistics: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+    let statistics = workplace.json(name);
     let of_grain = |grain: &Value| {
         let size = grain.get("volume").unwrap_or_else(|| &grain["area"]);
         (grain["SeedId"].as_u64().unwrap(), size.as_f64().unwrap())
@@ -260,7 +260,7 @@ fn polygons_with_holes_are_grains_in_the_plane() {
     let made = "smooth grains.json --relax 0.00001 -o made.vtp --stats made.json";
     workplace.run(made);
     are_near(&grains(&workplace, "made.json"), expected(), 1e-9);
-    let statistics: Value = serde_json::from_slice(&workplace.bytes("made.json")).unwrap();
+    let statistics = workplace.json("made.json");
     assert_eq!(statistics["grains"][1]["Phase"], 1);
     let angles = statistics["grains"][1]["EulerAngles"].as_array().unwrap();
     assert!(

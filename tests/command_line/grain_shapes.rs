@@ -4,10 +4,6 @@ use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
 }
@@ -29,7 +25,7 @@ fn shapes_are_reached_beside_exact_volumes() {
             said.contains("shapes      asked ") && said.contains("grains 2.00 times as long as wide"),
             "{said}"
         );
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         let shapes = &summary["shapes"];
         assert_eq!(number(shapes, "ratio_asked"), asked);
         assert!(number(shapes, "ratio_of_cells") >= of_cells, "{options}: {shapes}");
@@ -55,7 +51,7 @@ fn each_grain_has_the_shape_of_its_line() {
     let lines: String = (0..30).map(|_| "2,1,1,90,0,0\n").collect();
     workplace.put("s.csv", format!("a,b,c,phi1,Phi,phi2\n{lines}"));
     workplace.run("--seeds 30 --grain-shapes s.csv -n 1 -o a.vtp --stats a.json");
-    let grains = json(&workplace, "a.json")["grains"].clone();
+    let grains = workplace.json("a.json")["grains"].clone();
     let grains = grains.as_array().unwrap();
     // The moment of inertia about the axis along which grains are long is the least: y, as 90 degrees about z turn x there.
     let is_long = |grain: &&Value| {

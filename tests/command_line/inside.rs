@@ -4,10 +4,6 @@ use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn numbers(table: &Value, name: &str, column: &str) -> Vec<f64> {
     table[name].as_array().unwrap().iter().map(|row| row[column].as_f64().unwrap()).collect()
 }
@@ -36,7 +32,7 @@ fn lamellae_stay_plane_unless_a_time_is_given() {
     {
         workplace.run(&format!("{options} --stats a.json"));
         workplace.run(&format!("{options} --relax 0 --stats b.json"));
-        assert_eq!(json(&workplace, "a.json")["grains"], json(&workplace, "b.json")["grains"], "{options}");
+        assert_eq!(workplace.json("a.json")["grains"], workplace.json("b.json")["grains"], "{options}");
     }
 }
 
@@ -54,17 +50,17 @@ fn divided_grains_keep_their_volumes_before_and_after_relaxation() {
     ] {
         let tables = "-n 0 --cells-json c.json";
         workplace.run(&format!("{grains} {tables} --no-mesh"));
-        let whole = numbers(&json(&workplace, "c.json"), "cells", column);
+        let whole = numbers(&workplace.json("c.json"), "cells", column);
         let said = workplace
             .run(&format!("{grains} {tables} --inside {inside} --stats t.json --json-summary s.json"));
         assert!(said.contains("\ninside      "), "{said}");
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         let found = &summary["inside"][0];
         assert!(found["parts"].as_u64().unwrap() >= 2 * found["divided"].as_u64().unwrap(), "{found}");
         let [asked, reached] = ["length_asked", "length"].map(|key| found[key].as_f64().unwrap());
         assert!((reached / asked - 1.0).abs() < 0.35, "{found}");
         for (table, name) in [("c.json", "cells"), ("t.json", "grains")] {
-            let sums = sums(&json(&workplace, table), name, column);
+            let sums = sums(&workplace.json(table), name, column);
             assert_eq!(sums.len(), whole.len());
             for (sum, whole) in sums.iter().zip(&whole) {
                 assert!((sum / whole - 1.0).abs() < 1e-10, "{grains} {inside}: {sum} {whole}");
@@ -84,7 +80,7 @@ fn the_phases_of_divided_grains_keep_their_shares() {
         "{phases} --inside b:lamellae(width=0.1) --inside a:voronoi(diameter=0.2) -o a.vtm -o a.vtp -o a.vti --voxels 4 4 4 \
          --json-summary s.json --cells-csv c.csv --stats t.csv --grains-dir each --picture p.png --picture-size 200 200 --color-by phase --report r.html"
     ));
-    let summary = json(&workplace, "s.json");
+    let summary = workplace.json("s.json");
     for phase in summary["phases"].as_array().unwrap() {
         let [asked, reached] = ["fraction_asked", "fraction"].map(|key| phase[key].as_f64().unwrap());
         assert!((reached / asked - 1.0).abs() < 1e-10, "{phase}");
@@ -123,7 +119,7 @@ fn lamellae_of_stretched_grains_are_as_wide_as_asked_for() {
         let options = "--dim 2 --seeds 6 --relax 0 -n 0 --aspect-ratio 3 1 --cells-json c.json --no-mesh";
         let mut command = workplace.command(options);
         command.args(["--inside", &format!("lamellae(width=0.1,normal={normal})")]).assert().success();
-        let table = json(&workplace, "c.json");
+        let table = workplace.json("c.json");
         // A grain three times as long as wide has five lamellae across its length, and some two across its width.
         let parents = parents(&table, "cells");
         let most = (0..6).map(|parent| parents.iter().filter(|own| **own == parent).count()).max();

@@ -50,7 +50,7 @@ fn every_form_of_a_map_gives_grains_of_exact_volume() {
         assert!(said.contains("\nmap         24 x 20 x 16 voxels\n"), "{said}");
         assert!(said.contains("validation  good: every grain closed, nothing crossed or folded"), "{said}");
         workplace.command("check a.vtp").assert().success();
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         let grains = statistics["grains"].as_array().unwrap();
         assert_eq!(grains.len(), 9);
         for (grain, count) in grains.iter().zip(&COUNTS[1..]) {
@@ -120,7 +120,7 @@ fn short_edges_collapse_unless_told_otherwise() {
         workplace
             .run(&format!("smooth volume_damask.vti --exterior-label 0 {options} -o a.vtp --stats a.json"));
         workplace.command("check a.vtp").assert().success();
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         for (grain, count) in statistics["grains"].as_array().unwrap().iter().zip(&COUNTS[1..]) {
             assert!(
                 (grain["volume"].as_f64().unwrap() / (0.2 * count) - 1.0).abs() < 1e-12,
@@ -206,7 +206,7 @@ fn every_format_takes_the_network_of_a_map() {
     let formats = ["vtp", "vtu", "vtk", "vtm", "obj", "ply", "stl", "msh", "fe"];
     let outputs: String = formats.map(|format| format!(" -o a.{format}")).concat();
     workplace.run(&format!("smooth volume_damask.vti{outputs} --grains-dir grains --json-summary a.txt"));
-    let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.txt")).unwrap();
+    let summary = workplace.json("a.txt");
     assert_eq!(summary["grains"], 10);
     assert_eq!(summary["regularization"], serde_json::Value::Null);
     for format in formats {
@@ -278,7 +278,7 @@ fn cells_fitted_to_the_voxels_of_cells_are_these() {
             workplace.run(&format!("smooth a.vti {periodic} --fit-cells -o b.vtp --json-summary a.txt"));
         assert!(said.contains("validation  good"), "{said}");
         workplace.command("check b.vtp").assert().success();
-        let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.txt")).unwrap();
+        let summary = workplace.json("a.txt");
         let number = |key: &str| summary["fitted_cells"][key].as_f64().unwrap();
         let share = number("agreeing_voxels") / number("voxels");
         assert!(share > 0.98 && number("centroid_distance") < 0.01, "{share}: {said}");
@@ -315,7 +315,7 @@ fn parts_of_a_label_are_one_grain_or_several() {
     ] {
         let said = workplace.run(&format!("smooth map.npy {options} -o a.vtp --stats a.json"));
         assert!(said.contains(&format!("map         12 x 8 pixels{dropped}\n")), "{said}");
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         let grains = statistics["grains"].as_array().unwrap();
         let found: Vec<_> = grains.iter().map(|grain| grain["SeedId"].as_u64().unwrap()).collect();
         assert_eq!(found, ids, "{options}");
@@ -339,7 +339,7 @@ fn small_grains_go_to_their_neighbours() {
         said.contains("map         24 x 20 x 16 voxels; 101 in 3 small grains went to neighbours\n"),
         "{said}"
     );
-    let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+    let statistics = workplace.json("a.json");
     let grains = statistics["grains"].as_array().unwrap();
     let volumes: BTreeMap<u64, f64> = grains
         .iter()
@@ -500,7 +500,7 @@ fn cells_of_a_tessellation_relax() {
         assert!(said.contains("validation  good: every grain closed, nothing crossed or folded"), "{said}");
         workplace.command("check relaxed.vtp").assert().success();
         let [before, after] = ["before.json", "after.json"].map(|name| {
-            let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+            let statistics = workplace.json(name);
             let grains = statistics["grains"].as_array().unwrap().clone();
             let volume = |grain: &serde_json::Value| {
                 let name = if how.contains("--dim 2") { "area" } else { "volume" };

@@ -22,7 +22,7 @@ fn subdivided_boundaries_go_through_the_points_that_were_there() {
                 "{said}"
             );
             workplace.command("check b.vtp").assert().success();
-            let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("b.json")).unwrap();
+            let summary = workplace.json("b.json");
             assert!(summary["largest_relative_volume_error"].as_f64().unwrap() < 1e-12, "{summary}");
             let after = SurfaceFile::read(&workplace.path("b.vtp"));
             assert_eq!(after.cells.len(), parts * before.cells.len());

@@ -21,7 +21,7 @@ fn residual(said: &str) -> f64 {
 
 /// Labels in the map, and volumes.
 fn grains(workplace: &Workplace, name: &str) -> Vec<(u64, f64)> {
-    let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+    let statistics = workplace.json(name);
     let of_grain =
         |grain: &serde_json::Value| (grain["SeedId"].as_u64().unwrap(), grain["volume"].as_f64().unwrap());
     statistics["grains"].as_array().unwrap().iter().map(of_grain).collect()

@@ -63,17 +63,16 @@ fn line<'a>(said: &'a str, name: &str) -> &'a str {
 fn maps_that_this_program_writes_give_their_grains_back() {
     let workplace = Workplace::new();
     workplace.run("--dim 2 --seeds 12 --rng-seed 4 --box 3 2 --texture random --crystal-symmetry hexagonal --voxels 90 60 -o a.ctf -o a.ang -o a.vtp --stats a.json");
-    let json = |name: &str| -> serde_json::Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
     let numbers = |value: &serde_json::Value| -> Vec<f64> {
         value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
     };
-    let made = json("a.json");
+    let made = workplace.json("a.json");
     for name in ["a.ctf", "a.ang"] {
         let said = workplace
             .run(&format!("smooth {name} -o b.vtp --stats b.json --report b.html -o b.{}", &name[2..]));
         assert_eq!(line(&said, "map"), "90 x 60 points on a square grid, step 0.0333333, in 12 grains");
         assert!(line(&said, "spread").starts_with("0.00 degrees"), "{said}");
-        let found = json("b.json");
+        let found = workplace.json("b.json");
         let mut matched = 0;
         for grain in found["grains"].as_array().unwrap() {
             let area = grain["area"].as_f64().unwrap();
@@ -181,7 +180,7 @@ fn hexagonal_maps_keep_the_area_of_their_points() {
                 .starts_with(&format!("{columns} x 9 points on a hexagonal grid, step 0.5, in 2 grains")),
             "{said}"
         );
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         let disc = &statistics["grains"][1];
         assert_eq!(disc["VoxelCount"], inside);
         // The area of a hexagon's cell is step times height; the file rounds both.
@@ -216,7 +215,7 @@ fn points_are_masked_filled_dropped_or_left_as_pores() {
     assert!(line(&said, "map").ends_with("; 1 in 1 small grain went to neighbours"), "{said}");
     let counts = |options: &str| -> Vec<u64> {
         workplace.run(&format!("smooth a.ang {options} -o a.vtp --stats a.json"));
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         let grains = statistics["grains"].as_array().unwrap().iter();
         grains.map(|grain| grain["VoxelCount"].as_u64().unwrap()).collect()
     };
@@ -272,7 +271,7 @@ fn twins_become_one_grain_and_crystals_are_turned() {
     workplace.put("a.ang", ang(HEAD, square([12, 6], 1.0, three)));
     let grains = |options: &str| {
         let said = workplace.run(&format!("smooth a.ang {options} -o a.vtp --stats a.json"));
-        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let statistics = workplace.json("a.json");
         (said, statistics["grains"].as_array().unwrap().clone())
     };
     assert_eq!(grains("").1.len(), 3);

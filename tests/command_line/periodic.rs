@@ -1,5 +1,4 @@
 use glam::DVec3;
-use serde_json::Value;
 
 use crate::surface_file::{SurfaceFile, integers};
 use crate::workplace::{FAILED, USAGE, Workplace};
@@ -77,7 +76,7 @@ fn tables_name_a_grain_as_its_own_neighbor() {
     let workplace = Workplace::new();
     workplace.put("seeds.csv", "0.5,0.5,0.5\n");
     workplace.run("--seeds-file seeds.csv --periodic x,y --no-mesh --cells-json cells.json");
-    let table: Value = serde_json::from_slice(&workplace.bytes("cells.json")).unwrap();
+    let table = workplace.json("cells.json");
     assert_eq!(table["cells"][0]["neighbors"], serde_json::json!([-6, -5, 0, 0, 0, 0]));
     assert!((table["cells"][0]["volume"].as_f64().unwrap() - 1.0).abs() < 1e-15);
 }

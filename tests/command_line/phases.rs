@@ -4,10 +4,6 @@ use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
 }
@@ -41,14 +37,14 @@ fn phases_have_their_shares_of_the_volume_before_and_after_relaxation() {
         let said = workplace
             .run(&format!("{options} -n 1 --json-summary s.json --cells-json c.json --stats t.json"));
         assert!(said.contains("phase 1     a "), "{said}");
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         for phase in rows(&summary, "phases") {
             let asked = number(phase, "fraction_asked");
             let near = |key: &str| (number(phase, key) / asked - 1.0).abs();
             assert!(near("fraction") < 1e-10 && near("fraction_of_cells") < 1e-10, "{options}: {phase}");
             let id = phase["number"].as_i64().unwrap();
             for (table, name) in [("c.json", "cells"), ("t.json", "grains")] {
-                let table = json(&workplace, table);
+                let table = workplace.json(table);
                 let found = share(rows(&table, name), column, id);
                 assert!((found / asked - 1.0).abs() < 1e-10, "{options}: {found} of phase {id} in {name}");
             }
@@ -61,7 +57,7 @@ fn phases_have_their_shares_of_the_volume_before_and_after_relaxation() {
 fn phases_of_one_distribution_have_grains_alike_in_size() {
     let workplace = Workplace::new();
     workplace.run("--phase a:0.8 --phase b:0.2 --seeds 200 --no-mesh --cells-json c.json");
-    let table = json(&workplace, "c.json");
+    let table = workplace.json("c.json");
     let mean = |phase: i64| {
         let own: Vec<f64> = rows(&table, "cells")
             .iter()
@@ -80,7 +76,7 @@ fn phases_with_diameters_of_their_own_have_as_many_grains_as_fill_their_shares()
     let phases = "--phase a:0.6,diameters=lognormal(mean=20,cv=0.3) --phase b:0.4,diameters=0.5*equal(8)+0.5*equal(12),by=volume";
     for options in ["--box 80 80 80", "--box 80 80 80 --seeds 300", "--dim 2 --box 300 200"] {
         workplace.run(&format!("{phases} {options} -n 0 --relax 0 --json-summary s.json"));
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         let count: f64 = rows(&summary, "phases").iter().map(|phase| number(phase, "grains")).sum();
         assert_eq!(count, number(&summary, "grains"), "{options}");
         let scale = |phase: usize| number(&summary["phases"][phase]["sizes"], "scale");
@@ -99,7 +95,7 @@ fn phases_with_diameters_of_their_own_have_as_many_grains_as_fill_their_shares()
     }
     // What has none of its own has that of all.
     workplace.run("--phase a:0.5 --phase b:0.5,diameters=equal(2) --diameters equal(3) --box 9 9 9 -n 0 --relax 0 --json-summary s.json");
-    let summary = json(&workplace, "s.json");
+    let summary = workplace.json("s.json");
     assert_eq!(summary["phases"][0]["sizes"]["asked"], "equal(3)");
     assert_eq!(summary["phases"][1]["sizes"]["asked"], "equal(2)");
 }
@@ -112,7 +108,7 @@ fn textures_and_symmetries_are_those_of_the_phases() {
     );
     assert!(said.contains("texture     a: cubic crystals, cube(0) 100.0 %"), "{said}");
     assert!(said.contains("texture     b: hexagonal crystals, random 100.0 %"), "{said}");
-    let table = json(&workplace, "t.json");
+    let table = workplace.json("t.json");
     let grains = rows(&table, "grains");
     let is_cube =
         |row: &Value| row["EulerAngles"].as_array().unwrap().iter().all(|angle| angle.as_f64() == Some(0.0));
@@ -143,7 +139,7 @@ fn textures_and_symmetries_are_those_of_the_phases() {
         kinds[kind] += 1;
     }
     assert!(kinds.iter().all(|kind| *kind > 5), "{kinds:?}");
-    let summary = json(&workplace, "s.json");
+    let summary = workplace.json("s.json");
     assert!(summary["texture"].is_null());
     assert_eq!(summary["phases"][0]["texture"]["components"][0]["name"], "cube(0)");
     assert_eq!(summary["phases"][1]["crystal_symmetry"], "622");
@@ -239,7 +235,7 @@ fn settings_of_a_file_repeat_its_phases_and_tables_of_toml_are_phases() {
     workplace.run("--config run.toml -o c.vtp");
     assert!(workplace.bytes("a.vtp") == workplace.bytes("c.vtp"));
     // The command line that files tell is one.
-    let line = json(&workplace, "s.json")["command_line"].as_str().unwrap().to_owned();
+    let line = workplace.json("s.json")["command_line"].as_str().unwrap().to_owned();
     assert!(line.contains(" --phase a:0.6,diameters=0.7*") && line.contains(" --phase b:0.4,"), "{line}");
     workplace.put("run.toml", "phase = ['a:0.5', 'b:0.5']\nseeds = 4\nlevels = 0\nrelax = 0\n");
     workplace.run("--config run.toml");
@@ -391,7 +387,7 @@ fn grains_of_a_phase_are_where_they_were_to_be() {
         let second = format!("--phase b:{share},diameters=equal(7),place={place}");
         let arguments = format!("{options} {first} {second} -n 1 -o a.vtp --json-summary s.json");
         let said = workplace.run(&arguments);
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         let phase = &rows(&summary, "phases")[1];
         assert_eq!(phase["place"], place);
         let (grains, in_place) = (number(phase, "grains"), number(phase, "in_place"));
@@ -411,7 +407,7 @@ fn grains_of_a_phase_touch_each_other_more_or_less_as_asked() {
         let contiguity = |place: &str| {
             let arguments = format!("{options} --phase a:0.75 --phase b:0.25{place}");
             workplace.run(&format!("{arguments} -n 0 --relax 0 --json-summary s.json"));
-            let summary = json(&workplace, "s.json");
+            let summary = workplace.json("s.json");
             let phase = &rows(&summary, "phases")[1];
             assert!((number(phase, "fraction_of_cells") / 0.25 - 1.0).abs() < 1e-10, "{options}: {phase}");
             number(phase, "contiguity")

@@ -335,7 +335,7 @@ fn report_tells_what_was_asked_for_and_reached() {
         "--seeds 80 -n 0 --relax 0 --diameters lognormal(mean=2,cv=0.3) --phase a:0.8,texture={texture} --phase b:0.2,texture=random --report r.html --json-summary run.json --quiet"
     ));
     let page = String::from_utf8(workplace.bytes("r.html")).unwrap();
-    let run: serde_json::Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     let rows = run["asked_and_reached"].as_array().unwrap();
     let row =
         |what: &str| rows.iter().find(|row| row["what"] == what).unwrap_or_else(|| panic!("{what} in {run}"));

@@ -10,7 +10,7 @@ use crate::workplace::{FAILED, USAGE, Workplace};
 
 /// Number and volume of each grain in a file of `--stats`, in order.
 fn grains(workplace: &Workplace, name: &str) -> Vec<(u64, f64)> {
-    let statistics: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+    let statistics = workplace.json(name);
     let of_grain = |grain: &Value| (grain["SeedId"].as_u64().unwrap(), grain["volume"].as_f64().unwrap());
     statistics["grains"].as_array().unwrap().iter().map(of_grain).collect()
 }
@@ -86,7 +86,7 @@ fn phases_and_orientations_ride_along() {
         "--seeds 8 -n 1 --texture random --phase a:0.4 --phase b:0.6,symmetry=hexagonal -o 0.vtp --stats 0.json",
     );
     let of = |name: &str| -> Vec<f64> {
-        let statistics: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        let statistics = workplace.json(name);
         let grains = statistics["grains"].as_array().unwrap().iter();
         let numbers = grains.flat_map(|grain| {
             let quaternion =

@@ -94,7 +94,7 @@ fn tables_of_cells_give_the_same_cells_again() {
         workplace.run(&format!("{arguments} --no-mesh --cells-json one.json --cells-csv one.csv"));
         workplace.run(&format!("--seeds-file one.json {plane} --no-mesh --cells-json two.json"));
         let cells = |name| {
-            let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+            let file = workplace.json(name);
             file["cells"].as_array().unwrap().clone()
         };
         assert_eq!(cells("one.json"), cells("two.json"), "{arguments}");
@@ -187,7 +187,7 @@ fn negative_weights_become_radii_of_the_same_cells() {
     workplace.run("--seeds-file seeds.csv --relax 0 -n 0 -o one.tess --cells-json one.json");
     workplace.run("--seeds-file one.tess --no-mesh --cells-json two.json");
     let volumes = |name| -> Vec<f64> {
-        let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        let file = workplace.json(name);
         file["cells"].as_array().unwrap().iter().map(|cell| cell["volume"].as_f64().unwrap()).collect()
     };
     let (one, two) = (volumes("one.json"), volumes("two.json"));

@@ -5,7 +5,7 @@ use crate::workplace::{USAGE, Workplace};
 
 fn cells(workplace: &Workplace, arguments: &str) -> Vec<Value> {
     workplace.run(&format!("{arguments} --no-mesh --cells-json cells.json"));
-    let table: Value = serde_json::from_slice(&workplace.bytes("cells.json")).unwrap();
+    let table = workplace.json("cells.json");
     table["cells"].as_array().unwrap().clone()
 }
 

@@ -77,7 +77,7 @@ fn free_grains_change_their_sizes_and_fill_the_box() {
     workplace.run("--dim 2 --seeds 20 -n 2 --relax 0.01 --free --stats free.json");
     workplace.run("--dim 2 --seeds 20 -n 2 --relax 0.01 --stats kept.json");
     let areas = |name: &str| {
-        let all: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        let all = workplace.json(name);
         assert_eq!(all["command_line"].as_str().unwrap().contains(" --free"), name == "free.json");
         let grains = all["grains"].as_array().unwrap().clone();
         grains.iter().map(|grain| grain["area"].as_f64().unwrap()).collect::<Vec<f64>>()
@@ -109,8 +109,7 @@ fn grains_of_the_plane_vanish_as_others_grow() {
     let summary = workplace.run(&format!(
         "{arguments} -o a.vtp -o a.vtm --series a.pvd --every 20 --stats a.json --json-summary s.json --picture a.png --picture-size 200 200 --report a.html"
     ));
-    let json = |name: &str| -> serde_json::Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
-    let record = json("s.json");
+    let record = workplace.json("s.json");
     let vanished = record["vanished"].as_array().unwrap();
     let gone: Vec<i64> = vanished.iter().map(|gone| gone["grain"].as_i64().unwrap()).collect();
     assert!(gone.len() > 20, "{summary}");
@@ -122,7 +121,7 @@ fn grains_of_the_plane_vanish_as_others_grow() {
         "{summary}"
     );
     assert!(summary.contains(&format!("grains      {} in ", 60 - gone.len())), "{summary}");
-    let measured = json("a.json");
+    let measured = workplace.json("a.json");
     let left: Vec<i64> =
         measured["grains"].as_array().unwrap().iter().map(|grain| grain["id"].as_i64().unwrap()).collect();
     assert!(left.len() == 60 - gone.len() && left.iter().all(|grain| !gone.contains(grain)));

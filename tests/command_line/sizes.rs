@@ -4,10 +4,6 @@ use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
 }
@@ -15,7 +11,7 @@ fn number(value: &Value, key: &str) -> f64 {
 /// Numbers of a column of a table of cells.
 fn column(workplace: &Workplace, arguments: &str, name: &str) -> Vec<f64> {
     workplace.run(&format!("{arguments} --no-mesh --cells-json cells.json"));
-    let table = json(workplace, "cells.json");
+    let table = workplace.json("cells.json");
     table["cells"].as_array().unwrap().iter().map(|cell| number(cell, name)).collect()
 }
 
@@ -38,7 +34,7 @@ fn distribution_is_reached_by_cells_and_kept_by_relaxation() {
             said.contains("sizes       asked lognormal(mean=3,cv=0.35) (mean 3.0000, cv 0.3500; quantiles)"),
             "{said}"
         );
-        let summary = json(&workplace, "s.json");
+        let summary = workplace.json("s.json");
         assert_eq!(summary["grains"], count);
         let sizes = &summary["sizes"];
         assert!(number(sizes, "cdf_distance") <= 0.5 / f64::from(count) + 1e-12, "{options}: {sizes}");
@@ -58,7 +54,7 @@ fn as_many_grains_are_made_as_fill_the_domain() {
             ["lognormal(mean=15,cv=0.35)", "0.8*lognormal(mean=10,cv=0.3)+0.2*equal(25),by=volume"]
         {
             workplace.run(&format!("{options} --diameters {diameters} -n 0 --relax 0 --json-summary s.json"));
-            let summary = json(&workplace, "s.json");
+            let summary = workplace.json("s.json");
             let scale = number(&summary["sizes"], "scale");
             let count = number(&summary, "grains");
             // One grain more or less.
@@ -70,9 +66,9 @@ fn as_many_grains_are_made_as_fill_the_domain() {
     }
     // Of what the distribution has in its tail, random draws have what chance gives.
     workplace.run("--box 9 9 9 --diameters uniform(1,2) --draw random -n 0 --relax 0 --json-summary s.json");
-    let sizes = &json(&workplace, "s.json")["sizes"];
+    let sizes = &workplace.json("s.json")["sizes"];
     assert!((0.9..1.1).contains(&number(sizes, "scale")), "{sizes}");
-    let count = number(&json(&workplace, "s.json"), "grains");
+    let count = number(&workplace.json("s.json"), "grains");
     assert!(number(sizes, "cdf_distance") > 0.5 / count, "{sizes}");
 }
 
@@ -110,7 +106,7 @@ fn each_grain_has_the_volume_given_to_it() {
     workplace.put("s.csv", "x,y,z,radius\n.2,.2,.2,.1\n.8,.3,.4,.3\n.5,.5,.8,.1\n.3,.8,.3,.1\n");
     let said = workplace.run("--seeds-file s.csv --volumes v.csv --no-mesh --cells-json c.json");
     assert!(said.contains("passed over radii or weights, as grains have other sizes, in s.csv"), "{said}");
-    let cells = json(&workplace, "c.json")["cells"].clone();
+    let cells = workplace.json("c.json")["cells"].clone();
     assert_eq!(cells[1]["seed"], serde_json::json!([0.8, 0.3, 0.4]));
     assert!((number(&cells[2], "volume") / 0.375 - 1.0).abs() < 1e-10);
     workplace.put("a.txt", "1\n3\n");
@@ -327,7 +323,7 @@ fn stretched_grains_are_those_of_the_unstretched_frame() {
         for ([x, y, z], found) in frame.iter().zip(&stretched) {
             assert_eq!([4.0 * x, 0.5 * y, 0.5 * z], *found, "{options}");
         }
-        let [frame, stretched] = ["a.json", "b.json"].map(|name| json(&workplace, name));
+        let [frame, stretched] = ["a.json", "b.json"].map(|name| workplace.json(name));
         for same in [
             "angles_before",
             "angles_after",
@@ -352,7 +348,7 @@ fn stretched_grains_are_those_of_the_unstretched_frame() {
     workplace.run("--dim 2 --seeds 30 --box 1 4 --cells-json a.json -o a.vtp");
     workplace.run("--dim 2 --seeds 30 --box 2 2 --aspect-ratio 4 1 --cells-json b.json -o b.vtp");
     workplace.command("check b.vtp").assert().success();
-    let [frame, stretched] = ["a.json", "b.json"].map(|name| json(&workplace, name)["cells"].clone());
+    let [frame, stretched] = ["a.json", "b.json"].map(|name| workplace.json(name)["cells"].clone());
     for (frame, stretched) in frame.as_array().unwrap().iter().zip(stretched.as_array().unwrap()) {
         assert!((number(frame, "area") / number(stretched, "area") - 1.0).abs() < 1e-12);
         assert!(
@@ -364,7 +360,7 @@ fn stretched_grains_are_those_of_the_unstretched_frame() {
     // Seeds of a file are where the box has them.
     workplace.put("s.csv", "x,y,z\n.5,.2,.2\n2.8,.3,.4\n3.5,.5,.8\n");
     workplace.run("--seeds-file s.csv --box 4 1 1 --aspect-ratio 2 1 1 --no-mesh --cells-json c.json");
-    let seed = &json(&workplace, "c.json")["cells"][1]["seed"];
+    let seed = &workplace.json("c.json")["cells"][1]["seed"];
     assert!((seed[0].as_f64().unwrap() / 2.8 - 1.0).abs() < 1e-15, "{seed}");
 }
 
@@ -409,7 +405,7 @@ fn diameters_follow_a_gradient() {
     for (run, axes) in [("--box 1 1 2 --gradient z:g.csv", 3), ("--dim 2 --box 2 1 --gradient x:g.csv", 2)] {
         let run = format!("{run} --seeds 400 --diameters lognormal(mean=1,cv=0.2)");
         workplace.run(&format!("{run} --no-mesh --cells-json c.json"));
-        let cells = json(&workplace, "c.json")["cells"].clone();
+        let cells = workplace.json("c.json")["cells"].clone();
         let mut ratios = [Vec::new(), Vec::new()];
         for cell in cells.as_array().unwrap() {
             let position = cell["centroid"][if axes == 3 { 2 } else { 0 }].as_f64().unwrap();
@@ -422,7 +418,7 @@ fn diameters_follow_a_gradient() {
     let run =
         "--box 1 1 2 --periodic x,y --gradient z:g.csv --diameters lognormal(mean=0.1,cv=0.2) -n 0 --relax 0";
     workplace.run(&format!("{run} --json-summary s.json -o a.vtp --report r.html"));
-    let summary = json(&workplace, "s.json");
+    let summary = workplace.json("s.json");
     let sizes = &summary["sizes"];
     assert!((number(sizes, "scale") - 1.0).abs() < 0.02, "{sizes}");
     assert!(number(sizes, "cdf_distance") <= 0.5 / number(&summary, "grains") + 1e-9, "{sizes}");
@@ -471,7 +467,7 @@ fn large_grains_that_are_missing_are_told_by_volume() {
     let run = "--diameters 0.9*equal(1)+0.1*equal(10),by=volume -n 0 --relax 0 --json-summary s.json --seeds";
     for (count, least, most) in [("100", 0.099, 0.101), ("5000", 0.0, 0.08)] {
         let said = workplace.run(&format!("{run} {count} --lloyd 0"));
-        let sizes = &json(&workplace, "s.json")["sizes"];
+        let sizes = &workplace.json("s.json")["sizes"];
         assert!(number(sizes, "cdf_distance") <= 0.0002, "{sizes}");
         let by_volume = number(sizes, "cdf_distance_by_volume");
         assert!((least..most).contains(&by_volume), "{sizes}");

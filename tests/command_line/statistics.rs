@@ -10,10 +10,6 @@ use vtkio::model::{Attribute, DataSet, Piece, PolyDataPiece, Vtk};
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn rows<'a>(document: &'a Value, table: &str) -> &'a Vec<Value> {
     document[table].as_array().unwrap()
 }
@@ -54,7 +50,7 @@ fn statistics_of_a_periodic_network_sum_up() {
     let workplace = Workplace::new();
     let said = workplace.run("--seeds 12 -n 1 --periodic x,y,z --regularize 0 --stats grains.json");
     assert!(said.ends_with("written     grains.vtp, grains.json\n"), "{said}");
-    let all = json(&workplace, "grains.json");
+    let all = workplace.json("grains.json");
     assert!((sum(&all, "grains", "volume") - 1.0).abs() < 1e-9);
     // What one grain gains others lose.
     assert!(sum(&all, "grains", "growth_rate").abs() < 1e-9);
@@ -78,7 +74,7 @@ fn higher_order_junctions_are_told_apart() {
     let periodic =
         "--seeds 60 --seeding random --periodic x,y,z -n 0 --stats a.json --json-summary run.json -o a.vtp";
     let said = workplace.run(periodic);
-    let [all, run] = ["a.json", "run.json"].map(|name| json(&workplace, name));
+    let [all, run] = ["a.json", "run.json"].map(|name| workplace.json(name));
     let topology = &run["topology"];
     assert_eq!(all["topology"], *topology);
     let number = |key: &str| topology[key].as_f64().unwrap();
@@ -113,13 +109,13 @@ fn higher_order_junctions_are_told_apart() {
     assert!(line.ends_with(&faces), "{line}");
 
     workplace.run(&format!("{periodic} --regularize 0"));
-    let topology = &json(&workplace, "run.json")["topology"];
+    let topology = &workplace.json("run.json")["topology"];
     assert_eq!(topology["faces"], topology["faces_before"]);
     assert_eq!(topology["points_by_grains"].as_object().unwrap().keys().collect::<Vec<_>>(), ["4"]);
     assert!(numbers(&workplace, "a.vtp", "NumberOfGrains").iter().all(|grains| (2.0..=4.0).contains(grains)));
     // In the plane only three grains meet, by default.
     workplace.run("--dim 2 --seeds 60 --json-summary run.json");
-    let run = json(&workplace, "run.json");
+    let run = workplace.json("run.json");
     assert_eq!(run["settings"]["relax"], "equilibrium");
     assert_eq!(run["topology"]["points_by_grains"].as_object().unwrap().keys().collect::<Vec<_>>(), ["3"]);
     for (arguments, relax) in
@@ -127,7 +123,7 @@ fn higher_order_junctions_are_told_apart() {
     {
         workplace
             .run(&format!("--dim 2 --seeds 9 --seeding random -n 0 --json-summary run.json {arguments}"));
-        assert_eq!(json(&workplace, "run.json")["settings"]["relax"], relax, "{arguments}");
+        assert_eq!(workplace.json("run.json")["settings"]["relax"], relax, "{arguments}");
     }
 }
 
@@ -138,10 +134,10 @@ fn diameters_are_told_in_the_unit_of_the_box() {
     let said = workplace.run("--lattice sc 2 --box 2 2 2 -n 0 --json-summary run.json");
     let line = "diameters   1.241 +- 0.0 in the unit of the box, equivalent: (6V/pi)^(1/3)";
     assert!(said.lines().any(|said| said == line), "{said}");
-    let diameter = &json(&workplace, "run.json")["equivalent_diameter"];
+    let diameter = &workplace.json("run.json")["equivalent_diameter"];
     assert!((diameter["mean"].as_f64().unwrap() - (6.0 / PI).cbrt()).abs() < 1e-12);
     let said = workplace.run("--dim 2 --seeds 20 --no-mesh --cells-json c.json");
-    let cells = json(&workplace, "c.json");
+    let cells = workplace.json("c.json");
     let mean = sum(&cells, "cells", "equivalent_diameter") / 20.0;
     let line = said.lines().find(|line| line.starts_with("diameters ")).unwrap();
     assert!(line.ends_with("in the unit of the box, equivalent: 2 sqrt(A/pi)"), "{line}");
@@ -156,7 +152,7 @@ fn statistics_as_csv_are_those_of_json() {
     let names = ["a.csv", "a.boundaries.csv", "a.triple_lines.csv", "a.quadruple_points.csv"];
     assert!(said.ends_with(&format!("written     grains.vtp, {}\n", names.join(", "))), "{said}");
     workplace.run("--seeds 8 -n 1 --stats a.json");
-    let document = json(&workplace, "a.json");
+    let document = workplace.json("a.json");
     for (name, table) in names.into_iter().zip(["grains", "boundaries", "triple_lines", "quadruple_points"]) {
         let (header, lines) = csv(&workplace, name);
         let rows = rows(&document, table);
@@ -183,7 +179,7 @@ fn statistics_as_csv_are_those_of_json() {
 fn statistics_in_the_plane() {
     let workplace = Workplace::new();
     workplace.run("--dim 2 --seeds 30 -n 2 --periodic x,y --regularize 0 --stats a.json");
-    let all = json(&workplace, "a.json");
+    let all = workplace.json("a.json");
     assert!((sum(&all, "grains", "area") - 1.0).abs() < 1e-9);
     assert!((all["distributions"]["sides"]["mean"].as_f64().unwrap() - 6.0).abs() < 1e-12);
     for grain in rows(&all, "grains") {
@@ -213,7 +209,7 @@ fn statistics_that_cannot_be_written_are_found_beforehand() {
 fn arrays_are_what_statistics_say() {
     let workplace = Workplace::new();
     workplace.run("--seeds 10 -n 2 --arrays --stats a.json");
-    let all = json(&workplace, "a.json");
+    let all = workplace.json("a.json");
     let ids = numbers(&workplace, "grains.vtp", "BoundaryId");
     let areas = numbers(&workplace, "grains.vtp", "BoundaryArea");
     let curvatures = numbers(&workplace, "grains.vtp", "BoundaryMeanCurvature");
@@ -258,7 +254,7 @@ fn arrays_are_what_statistics_say() {
 fn arrays_of_blocks_are_what_statistics_say() {
     let workplace = Workplace::new();
     workplace.run("--seeds 6 -n 1 --periodic x,y,z --arrays --stats a.json -o a.vtm");
-    let all = json(&workplace, "a.json");
+    let all = workplace.json("a.json");
     let grains = numbers(&workplace, "a/grains.vtp", "GrainId");
     let rates = numbers(&workplace, "a/grains.vtp", "GrowthRate");
     for (grain, rate) in grains.iter().zip(rates) {

@@ -4,10 +4,6 @@ use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
 }
@@ -26,7 +22,7 @@ fn boundaries_of_two_tensions_come_to_herrings_angles() {
     workplace.run(&format!(
         "{PHASES} --dim 2 --periodic x,y --seeds 40 -n 0 --stats t.json --json-summary s.json"
     ));
-    let (table, summary) = (json(&workplace, "t.json"), json(&workplace, "s.json"));
+    let (table, summary) = (workplace.json("t.json"), workplace.json("s.json"));
     let residual = number(&summary["residual"], "rms");
     assert!(residual < 1.5e-3, "{residual}");
     let phase_of = |grain: usize| table["grains"][grain]["Phase"].as_i64().unwrap();
@@ -55,7 +51,7 @@ fn boundaries_of_two_tensions_come_to_rest_in_space() {
     let said = workplace
         .run(&format!("{PHASES} --periodic x,y,z --seeds 12 -n 2 --relax equilibrium --json-summary s.json"));
     assert!(said.contains("tensions    asked a/b:0.9, 1.1; from 0.9000 to 1.1000 between grains"), "{said}");
-    let summary = json(&workplace, "s.json");
+    let summary = workplace.json("s.json");
     let residual = number(&summary["residual"], "rms");
     assert!(residual < 0.03, "{residual}");
     assert_eq!(summary["tensions"]["without_equilibrium"], serde_json::json!([]));
@@ -72,7 +68,7 @@ fn the_unit_of_tensions_changes_nothing() {
         let mut expected: Option<Vec<f64>> = None;
         for unit in ["1", "1e-6", "1e6"] {
             workplace.run(&format!("{options} --tension {unit}*{law} --stats t.json"));
-            let table = json(&workplace, "t.json");
+            let table = workplace.json("t.json");
             let grains = table["grains"].as_array().unwrap();
             let places = |grain: &Value| ["centroid_x", "centroid_y"].map(|name| number(grain, name));
             let found: Vec<f64> = grains.iter().flat_map(places).collect();
@@ -102,7 +98,7 @@ fn tensions_follow_the_disorientation_down_to_a_floor() {
         workplace.run(&format!(
             "--seeds 40 -n 0 --texture cube(1)*0.5+random*0.5 --tension {text} --stats t.json --json-summary s.json -o a.vtp"
         ));
-        let table = json(&workplace, "t.json");
+        let table = workplace.json("t.json");
         let mut at_floor = 0;
         for boundary in table["boundaries"].as_array().unwrap() {
             let tension = number(boundary, "Tension");
@@ -114,7 +110,7 @@ fn tensions_follow_the_disorientation_down_to_a_floor() {
                 None => assert_eq!(tension, 0.0, "walls"),
             }
         }
-        let reached = json(&workplace, "s.json")["tensions"].clone();
+        let reached = workplace.json("s.json")["tensions"].clone();
         assert_eq!(index(&reached["at_floor"]), at_floor);
         assert!(number(&reached, "least") >= number(&reached, "floor"), "{reached}");
         assert!(String::from_utf8_lossy(&workplace.bytes("a.vtp")).contains(r#"Name="Tension""#));
@@ -127,7 +123,7 @@ fn lines_without_equilibrium_are_counted_and_named() {
     let said = workplace.run(
         "--phase a:0.5 --phase b:0.5 --tension a/a:3 --tension 1 --seeds 30 -n 0 --relax 0 --json-summary s.json --stats t.json",
     );
-    let table = json(&workplace, "t.json");
+    let table = workplace.json("t.json");
     let phase_of = |grain: &Value| table["grains"][index(grain)]["Phase"].as_i64().unwrap();
     let has_none = |line: &&Value| {
         let sides = line["sides"].as_array().unwrap();
@@ -142,7 +138,7 @@ fn lines_without_equilibrium_are_counted_and_named() {
         .map(|line| line["sides"].clone())
         .collect();
     assert!(wanted.len() > 10, "{}", wanted.len());
-    assert_eq!(json(&workplace, "s.json")["tensions"]["without_equilibrium"], Value::Array(wanted.clone()));
+    assert_eq!(workplace.json("s.json")["tensions"]["without_equilibrium"], Value::Array(wanted.clone()));
     assert!(
         said.contains(&format!(
             "{} without equilibrium, as one tension exceeds the sum of the others: of grains ",
@@ -240,7 +236,7 @@ fn mobilities_are_those_of_the_law_and_change_the_growth() {
         let said = workplace.run(&format!(
             "--dim 2 --periodic x,y --seeds 40 -n 1 --relax 0.02 --free --texture cube(6) {law} --stats t.json --json-summary s.json -o a.vtp"
         ));
-        (said, json(&workplace, "t.json"), json(&workplace, "s.json"))
+        (said, workplace.json("t.json"), workplace.json("s.json"))
     };
     let areas = |table: &Value| -> Vec<f64> {
         table["grains"].as_array().unwrap().iter().map(|grain| number(grain, "area")).collect()

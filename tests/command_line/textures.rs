@@ -5,11 +5,6 @@ use texture::{CrystalSymmetry, Orientation};
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
-/// The file as JSON.
-fn json(workplace: &Workplace, name: &str) -> Value {
-    serde_json::from_slice(&workplace.bytes(name)).unwrap()
-}
-
 /// The orientations in a table of cells or grains.
 fn orientations(rows: &Value) -> Vec<Orientation> {
     let numbers = |row: &Value| serde_json::from_value(row["EulerAngles"].clone()).unwrap();
@@ -24,8 +19,8 @@ fn texture_changes_neither_seeds_nor_geometry() {
         workplace.run(&format!("{run} --stats without.json --cells-json cells_without.json -o a.tess"));
         workplace
             .run(&format!("{run} --texture random --stats with.json --cells-json cells_with.json -o b.tess"));
-        let mut with = json(&workplace, "with.json");
-        let without = json(&workplace, "without.json");
+        let mut with = workplace.json("with.json");
+        let without = workplace.json("without.json");
         for table in ["grains", "boundaries"] {
             for row in with[table].as_array_mut().unwrap() {
                 for column in ["EulerAngles", "Quaternion", "Disorientation", "DisorientationAxis"] {
@@ -34,7 +29,7 @@ fn texture_changes_neither_seeds_nor_geometry() {
             }
             assert_eq!(with[table], without[table], "{table}");
         }
-        assert_eq!(json(&workplace, "cells_with.json")["cells"].as_array().unwrap().len(), 20);
+        assert_eq!(workplace.json("cells_with.json")["cells"].as_array().unwrap().len(), 20);
     }
 }
 
@@ -47,16 +42,16 @@ fn drawn_components_have_their_volumes_and_disorientations_are_those_of_the_orie
     ));
     let line = said.lines().find(|line| line.starts_with("texture ")).unwrap();
     assert!(line.contains("cubic crystals, goss(5) ") && line.contains("(asked 40.0 %)"), "{line}");
-    let stats = json(&workplace, "a.json");
+    let stats = workplace.json("a.json");
     let found = orientations(&stats["grains"]);
-    assert_eq!(found, orientations(&json(&workplace, "c.json")["cells"]), "cells become grains");
+    assert_eq!(found, orientations(&workplace.json("c.json")["cells"]), "cells become grains");
     // Goss within 15 degrees; of random ones some are, too: the largest, a sixteenth of the volume, where the seed is 1.
     let goss = Orientation::from_euler_degrees([0.0, 45.0, 0.0]);
     let volumes = stats["grains"].as_array().unwrap().iter().map(|grain| grain["volume"].as_f64().unwrap());
     let angle = |one: &Orientation| CrystalSymmetry::Octahedral.disorientation_angle(*one, goss);
     let near: f64 = volumes.zip(&found).filter(|(_, one)| angle(one) < 15.0).map(|(volume, _)| volume).sum();
     assert!((0.38..0.46).contains(&near), "{near}");
-    let shares = json(&workplace, "s.json")["texture"]["components"].clone();
+    let shares = workplace.json("s.json")["texture"]["components"].clone();
     for (share, wanted) in shares.as_array().unwrap().iter().zip([0.4, 0.6]) {
         assert!((share["reached"].as_f64().unwrap() / wanted - 1.0).abs() < 0.01, "{shares}");
     }
@@ -81,12 +76,12 @@ fn every_file_of_orientations_gives_them_back() {
         workplace.run(&format!(
             "{run} --texture random --stats a.json -o a.txt -o a.ori -o a.tess -o a.ang -o a.ctf -o material.yaml"
         ));
-        let given = orientations(&json(&workplace, "a.json")["grains"]);
+        let given = orientations(&workplace.json("a.json")["grains"]);
         for (file, tolerance) in
             [("a.txt", tolerance), ("a.ori", tolerance), ("a.ang", 1e-3), ("a.ctf", 1e-4)]
         {
             workplace.run(&format!("{run} --texture {file} --stats b.json -o b.vtp"));
-            let drawn = orientations(&json(&workplace, "b.json")["grains"]);
+            let drawn = orientations(&workplace.json("b.json")["grains"]);
             let nearest = |one: &Orientation| {
                 let angles =
                     given.iter().map(|other| CrystalSymmetry::Triclinic.disorientation_angle(*one, *other));
@@ -255,7 +250,7 @@ fn file_of_orientations_that_is_mistaken() {
     workplace.run("--texture a.ang --crystal-symmetry hexagonal --seeds 2 -n 0 -o a.vtp");
     workplace.put("a.ctf", format!("{ctf}0 0 0 0 0 0\n1 0 0 1,5 2 3\n"));
     workplace.run("--texture a.ctf --seeds 2 -n 0 -o a.vtp --stats a.json");
-    let drawn = orientations(&json(&workplace, "a.json")["grains"]);
+    let drawn = orientations(&workplace.json("a.json")["grains"]);
     let given = Orientation::from_euler_degrees([1.5, 2.0, 3.0]);
     assert!(CrystalSymmetry::Triclinic.disorientation_angle(drawn[0], given) < 1e-9);
 }
@@ -265,7 +260,7 @@ fn file_of_orientations_that_is_mistaken() {
 fn a_map_of_two_phases_gives_the_texture_of_each() {
     let workplace = Workplace::new();
     workplace.run("--dim 2 --seeds 12 -n 0 --phase a:0.5,symmetry=hexagonal --phase b:0.5 --texture random --voxels 40 40 -o m.ang -o m.ctf --stats m.json");
-    let measured = json(&workplace, "m.json");
+    let measured = workplace.json("m.json");
     let of_phase = |table: &Value, phase: i64| -> Vec<Orientation> {
         let grains = table["grains"].as_array().unwrap().iter().zip(orientations(&table["grains"]));
         grains.filter(|(grain, _)| grain["Phase"].as_i64() == Some(phase)).map(|(_, found)| found).collect()
@@ -274,7 +269,7 @@ fn a_map_of_two_phases_gives_the_texture_of_each() {
         workplace.run(&format!(
             "--seeds 9 -n 0 --phase a:0.5,symmetry=hexagonal,texture={map}#1 --phase b:0.5,texture={map}#2 --stats t.json -o a.vtp"
         ));
-        let drawn = json(&workplace, "t.json");
+        let drawn = workplace.json("t.json");
         for (phase, symmetry) in [(1, CrystalSymmetry::Hexagonal), (2, CrystalSymmetry::Octahedral)] {
             let known = of_phase(&measured, phase);
             for found in of_phase(&drawn, phase) {
@@ -310,7 +305,7 @@ fn neighbours_get_the_disorientations_asked_for_and_components_keep_their_volume
             "{run} --misorientations angles.csv --json-summary s.json --stats a.json --report r.html"
         ));
         assert!(said.contains("disorientations of neighbours are "), "{said}");
-        let texture = &json(&workplace, "s.json")["texture"];
+        let texture = &workplace.json("s.json")["texture"];
         let [before, after] =
             ["before", "after"].map(|when| texture["misorientations"][when].as_f64().unwrap());
         assert!(after < 0.03 && after < 0.3 * before, "{dimension}: from {before} to {after}");
@@ -318,7 +313,7 @@ fn neighbours_get_the_disorientations_asked_for_and_components_keep_their_volume
             assert!((share["reached"].as_f64().unwrap() / wanted - 1.0).abs() < 0.04, "{texture}");
         }
         // What is written has the shares below 15 degrees.
-        let stats = json(&workplace, "a.json");
+        let stats = workplace.json("a.json");
         let size = if dimension == "3" { "area" } else { "length" };
         let inside = stats["boundaries"].as_array().unwrap().iter();
         let inside = inside.filter(|boundary| boundary["Disorientation"].is_f64());
@@ -349,7 +344,7 @@ fn grain_without_neighbours_has_no_disorientations() {
             "{run} --relax 0 -n 0 --texture random --misorientations angles.csv --report r.html --json-summary s.json -o a.vtp"
         ));
         assert!(said.contains("cubic crystals, random 100.0 %") && !said.contains("NaN"), "{said}");
-        assert_eq!(json(&workplace, "s.json")["texture"]["misorientations"], Value::Null);
+        assert_eq!(workplace.json("s.json")["texture"]["misorientations"], Value::Null);
         let page = String::from_utf8(workplace.bytes("r.html")).unwrap();
         assert!(!page.split_once("<h2>Statistics</h2>").unwrap().1.contains("NaN"), "{run}");
     }

@@ -11,7 +11,7 @@ fn summaries_tell_of_changes_of_topology() {
     let workplace = Workplace::new();
     let said = workplace
         .run("--seeds 24 --seeding random -n 2 --relax equilibrium -o a.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
     let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
     let events = ["lines_to_boundaries", "boundaries_to_lines", "neighbor_switches"].map(changes);
@@ -43,14 +43,14 @@ fn summaries_tell_of_changes_of_topology() {
     assert!(said.contains("\ntopology    kept: "), "{said}");
     // In a given time grains switch neighbours, but nobody asks for rest.
     let said = workplace.run("--seeds 24 --seeding random -n 0 -o b.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     assert!(run["equilibrium"].is_null());
     assert!(run["topology_changes"]["boundaries_to_lines"].as_f64().unwrap() > 0.0, "{said}");
     let count = |counts: &str, of: &str| run["topology"][counts][of].as_u64().unwrap_or(0);
     assert!(count("points_by_grains", "4") > 80 && count("points_by_grains", "5") < 4, "{said}");
     assert_eq!(count("lines_by_boundaries", "4"), 0, "{said}");
     let said = workplace.run("--seeds 24 -n 0 --regularize 0.05 -o b.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     assert!(run["topology_changes"].is_null(), "{said}");
 }
 
@@ -66,7 +66,7 @@ fn summaries_tell_of_changes_of_topology_in_the_plane() {
         "--lattice square 4",
     ] {
         let said = workplace.run(&format!("{seeds} {plane}"));
-        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let run = workplace.json("run.json");
         let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
         let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
         let events = ["neighbor_switches", "lines_to_boundaries", "boundaries_to_lines"].map(changes);
@@ -100,8 +100,7 @@ fn changes_of_topology_leave_grains_their_volumes() {
     let workplace = Workplace::new();
     let seeds = "--seeds 12 -n 1 --rng-seed 3 --relax equilibrium";
     workplace.run(&format!("{seeds} -o a.vtp --json-summary run.json --stats stats.json"));
-    let [run, stats]: [Value; 2] =
-        ["run.json", "stats.json"].map(|name| serde_json::from_slice(&workplace.bytes(name)).unwrap());
+    let [run, stats]: [Value; 2] = ["run.json", "stats.json"].map(|name| workplace.json(name));
     // At a wall one boundary stays far from square to it: lines there are flagged.
     let lines = stats["triple_lines"].as_array().unwrap().iter();
     let is_inside = |line: &&Value| !line["sides"].as_array().unwrap().contains(&Value::from(-1));
@@ -115,7 +114,7 @@ fn changes_of_topology_leave_grains_their_volumes() {
 fn runs_and_checks_tell_how_thin_triangles_are() {
     let workplace = Workplace::new();
     let said = workplace.run("--seeds 20 -n 1 -o a.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     let [least, percentile] =
         ["least", "first_percentile"].map(|key| run["triangle_angles"][key].as_f64().unwrap());
     assert!(least >= 1.5 && least < percentile && percentile < 60.0, "{said}");
@@ -128,10 +127,10 @@ fn runs_and_checks_tell_how_thin_triangles_are() {
     assert!(checked.lines().any(|said| said.trim_start() == line), "{line}\nis not in\n{checked}");
     // Flat boundaries are as thin as cells have them.
     let said = workplace.run("--seeds 100 -n 0 --relax 0 -o flat.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     let thin = run["triangle_angles"]["thin"].as_u64().unwrap();
     assert!(thin > 0 && said.contains(&format!(", {thin} are below 1.5")), "{said}");
     workplace.run("--dim 2 --seeds 20 -o b.vtp --json-summary run.json");
-    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let run = workplace.json("run.json");
     assert!(run["triangle_angles"].is_null());
 }

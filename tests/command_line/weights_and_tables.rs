@@ -8,7 +8,7 @@ use crate::workplace::{FAILED, USAGE, Workplace};
 const OUTWEIGHED: &str = "x,y,z,radius\n0.3,0.5,0.5,0.4\n0.5,0.5,0.5,0\n0.7,0.5,0.5,0.4\n0.5,0.9,0.5,0.3\n";
 
 fn table(workplace: &Workplace, name: &str) -> Vec<Value> {
-    let table: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+    let table = workplace.json(name);
     table["cells"].as_array().unwrap().clone()
 }
 
@@ -35,9 +35,8 @@ fn numbers_of_seeds_are_kept_where_seeds_are_dropped() {
         "{dropping} --cells-csv c.csv --cells-json c.json --stats s.json --json-summary run.json --grains-dir grains"
     ));
     assert!(said.lines().any(|line| line == "dropped     1 seed (SeedId 1) that others outweigh"), "{said}");
-    let json = |name: &str| -> Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
-    assert_eq!(json("run.json")["dropped_seeds"], serde_json::json!([1]));
-    for rows in [&json("c.json")["cells"], &json("s.json")["grains"]] {
+    assert_eq!(workplace.json("run.json")["dropped_seeds"], serde_json::json!([1]));
+    for rows in [&workplace.json("c.json")["cells"], &workplace.json("s.json")["grains"]] {
         let ids: Vec<&Value> = rows.as_array().unwrap().iter().map(|row| &row["SeedId"]).collect();
         assert_eq!(ids, [0, 2, 3]);
     }

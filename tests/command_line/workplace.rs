@@ -37,6 +37,11 @@ impl Workplace {
         fs::read(self.path(name)).unwrap()
     }
 
+    /// What a JSON file holds.
+    pub fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_slice(&self.bytes(name)).unwrap()
+    }
+
     /// The program with arguments split at blanks, to be run here.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("grainsmooth");
