@@ -36,21 +36,14 @@ pub(crate) struct Fans {
     of_point: Grouped<[u32; 2]>,
 }
 
-/// A point where a fan has it.
+/// A point, and by how many periods it is away from its own place where a fan has it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slot {
     pub(crate) point: u32,
-    pub(crate) offset: DVec3,
+    pub(crate) translation: Translation,
 }
 
-impl Slot {
-    /// Where the fan has the point.
-    pub(crate) fn position(self, points: &[DVec3]) -> DVec3 {
-        points[self.point as usize] + self.offset
-    }
-}
-
-/// What a slot brings to a step, and the triangle and the edges that begin there.
+/// What a slot brings to a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SlotTerms {
     /// Of the area weighted by tension, by the point.
@@ -59,9 +52,13 @@ pub(crate) struct SlotTerms {
     pub(crate) volume_gradient: DVec3,
     /// Share of the area that the point stands for.
     pub(crate) mass: f64,
-    /// Stiffness of the edge to the next slot of the rim.
+}
+
+/// The stiffness of the edges that begin at a slot.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct EdgeStiffness {
+    /// To the next slot of the rim.
     pub(crate) rim: f64,
-    /// Stiffness of the edge to the centre.
     pub(crate) to_center: f64,
 }
 
@@ -70,6 +67,8 @@ pub(crate) struct FanTerms {
     /// Area weighted by tension.
     pub(crate) energy: f64,
     pub(crate) of_slot: Vec<SlotTerms>,
+    /// Of each slot. What holds a point is asked for without the rest: apart, less has to come through the memory.
+    pub(crate) stiffness: Vec<EdgeStiffness>,
 }
 
 impl Fans {
@@ -83,12 +82,10 @@ impl Fans {
             starts.push(starts[starts.len() - 1] + 2 * complex.corners(*face).len() + 1);
         }
         let slot_count = starts[faces.len()];
-        let mut slots: Vec<Slot> = repeat_n(Slot { point: 0, offset: DVec3::ZERO }, slot_count).collect();
+        let mut slots: Vec<Slot> =
+            repeat_n(Slot { point: 0, translation: Translation::ZERO }, slot_count).collect();
         let fill = |(fan, slots): (usize, &mut [Slot])| {
-            let slot = |point: usize, translation: Translation| Slot {
-                point: id(point),
-                offset: translation.vector(&domain),
-            };
+            let slot = |point: usize, translation| Slot { point: id(point), translation };
             let corners = complex.corners(faces[fan]);
             for (k, from) in corners.iter().enumerate() {
                 let to = corners[(k + 1) % corners.len()];
@@ -146,6 +143,11 @@ impl Fans {
         &self.slots[self.starts[fan]..self.starts[fan + 1]]
     }
 
+    /// Where a fan has the point of a slot.
+    pub(crate) fn position(&self, slot: Slot, points: &[DVec3]) -> DVec3 {
+        points[slot.point as usize] + slot.translation.vector(&self.domain)
+    }
+
     /// The first slot of a fan.
     pub(crate) fn first_slot(&self, fan: usize) -> usize {
         self.starts[fan]
@@ -193,50 +195,37 @@ impl Fans {
     /// The mean of the vertices of a fan.
     pub(crate) fn mean_of_corners(&self, fan: usize, points: &[DVec3]) -> DVec3 {
         let corners = self.slots_of(fan)[..self.rim_len(fan)].iter().step_by(2);
-        corners.map(|slot| slot.position(points)).sum::<DVec3>() / (self.rim_len(fan) / 2) as f64
+        corners.map(|slot| self.position(*slot, points)).sum::<DVec3>() / (self.rim_len(fan) / 2) as f64
     }
 
     /// The fans with neighbouring triangles that are further apart than the angle whose cosine is given.
     pub(crate) fn folded(&self, points: &[DVec3], cosine: f64) -> Vec<usize> {
-        let normals = self.normals(points);
-        let is_folded = |fan: &usize| {
-            let normals = &normals[self.starts[*fan]..self.starts[*fan + 1] - 1];
-            let pairs = normals.iter().zip(normals.iter().cycle().skip(1));
-            pairs.into_iter().any(|(a, b)| is_folded([*a, *b], cosine))
+        let is_folded = |normals: &mut Vec<DVec3>, fan: usize| {
+            normals.clear();
+            normals.extend(self.normals_of(fan, points));
+            let mut pairs = normals.iter().zip(normals.iter().cycle().skip(1));
+            pairs.any(|(a, b)| is_folded([*a, *b], cosine)).then_some(fan)
         };
-        (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).filter(is_folded).collect()
+        let fans = (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK);
+        fans.map_init(Vec::new, is_folded).flatten_iter().collect()
     }
 
     /// The rim of a fan, and its centre last.
     fn ring(&self, fan: usize, points: &[DVec3]) -> Vec<DVec3> {
-        self.slots_of(fan).iter().map(|slot| slot.position(points)).collect()
+        self.slots_of(fan).iter().map(|slot| self.position(*slot, points)).collect()
     }
 
-    /// Of each slot of a rim the normal of the triangle that begins there, twice as long as its area; of centres nothing.
-    pub(crate) fn normals(&self, points: &[DVec3]) -> Vec<DVec3> {
-        // All threads write first, as well: the system hands memory out to where that happens, and takes its time.
-        let mut normals: Vec<DVec3> = repeat_n(DVec3::ZERO, self.slots.len()).collect();
-        let fill = |(fan, normals): (usize, &mut [DVec3])| {
-            let ring = self.ring(fan, points);
-            let count = ring.len() - 1;
-            let center = ring[count];
-            for k in 0..count {
-                normals[k] = (ring[k] - center).cross(ring[(k + 1) % count] - center);
-            }
-        };
-        split(&mut normals, &self.starts)
-            .into_par_iter()
-            .enumerate()
-            .with_min_len(FANS_PER_TASK)
-            .for_each(fill);
-        normals
+    /// Of each slot of a fan's rim the normal of the triangle that begins there, twice as long as its area.
+    pub(crate) fn normals_of(&self, fan: usize, points: &[DVec3]) -> impl Iterator<Item = DVec3> {
+        let (rim, center) = self.slots_of(fan).split_at(self.rim_len(fan));
+        let center = self.position(center[0], points);
+        let spoke = move |slot: &Slot| self.position(*slot, points) - center;
+        rim.iter().zip(rim.iter().cycle().skip(1)).map(move |(from, to)| spoke(from).cross(spoke(to)))
     }
 
-    /// The volume of each cell, given [`Self::normals`] too.
-    pub(crate) fn volumes(&self, cell_count: usize, points: &[DVec3], normals: &[DVec3]) -> Vec<f64> {
-        let area = |fan: usize| -> DVec3 {
-            0.5 * normals[self.starts[fan]..self.starts[fan + 1] - 1].iter().sum::<DVec3>()
-        };
+    /// The volume of each cell.
+    pub(crate) fn volumes(&self, cell_count: usize, points: &[DVec3]) -> Vec<f64> {
+        let area = |fan: usize| -> DVec3 { 0.5 * self.normals_of(fan, points).sum::<DVec3>() };
         let areas = (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).map(area);
         let areas: Vec<DVec3> = areas.collect();
         let mut sums = vec![ConeSum::default(); cell_count];
@@ -255,18 +244,27 @@ impl Fans {
     /// What a step needs to know, with no cotangent above the given one.
     pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> FanTerms {
         let mut of_slot: Vec<SlotTerms> = repeat_n(SlotTerms::default(), self.slots.len()).collect();
-        let fill = |(fan, terms): (usize, &mut [SlotTerms])| {
+        let mut stiffness: Vec<EdgeStiffness> =
+            repeat_n(EdgeStiffness::default(), self.slots.len()).collect();
+        let fill = |(fan, (terms, stiffness)): (usize, (&mut [SlotTerms], &mut [EdgeStiffness]))| {
             check_cancelled();
-            fill_terms(&self.ring(fan, points), self.tensions[fan], largest_cotangent, terms)
+            fill_terms(&self.ring(fan, points), self.tensions[fan], largest_cotangent, terms, stiffness)
         };
-        let fans = split(&mut of_slot, &self.starts).into_par_iter().enumerate();
+        let of_fans = split(&mut of_slot, &self.starts).into_par_iter();
+        let fans = of_fans.zip(split(&mut stiffness, &self.starts)).enumerate();
         let energies: Vec<f64> = fans.with_min_len(FANS_PER_TASK).map(fill).collect();
-        FanTerms { energy: energies.iter().sum(), of_slot }
+        FanTerms { energy: energies.iter().sum(), of_slot, stiffness }
     }
 }
 
 /// The terms of one fan; gives its area times tension.
-fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut [SlotTerms]) -> f64 {
+fn fill_terms(
+    ring: &[DVec3],
+    tension: f64,
+    largest_cotangent: f64,
+    terms: &mut [SlotTerms],
+    stiffness: &mut [EdgeStiffness],
+) -> f64 {
     let center = ring.len() - 1;
     let mut area = 0.0;
     for k in 0..center {
@@ -286,9 +284,9 @@ fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut 
         }
         let [at_center, at_k, at_next] =
             triangle.cotangents(largest_cotangent).map(|cotangent| 0.5 * tension * cotangent);
-        terms[k].rim += at_center;
-        terms[k].to_center += at_next;
-        terms[next].to_center += at_k;
+        stiffness[k].rim += at_center;
+        stiffness[k].to_center += at_next;
+        stiffness[next].to_center += at_k;
     }
     tension * area
 }

@@ -53,27 +53,26 @@ impl FanFlow<'_> {
     pub(crate) fn step(&self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
         let Self { fans, tuning, .. } = *self;
         let terms = fans.terms(points, tuning.largest_cotangent);
-        let before = fans.normals(points);
         let (missing, tolerance) = match self.motion {
             Motion::Kept { volumes, .. } => {
-                let now = fans.volumes(volumes.len(), points, &before);
+                let now = fans.volumes(volumes.len(), points);
                 (volumes.iter().zip(now).map(|(volume, now)| volume - now).collect(), tuning.tolerance)
             }
             Motion::Free { .. } => (Vec::new(), FREE_TOLERANCE),
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
-        let mut parts = self.parts(&terms, &freedoms, last_place(points));
+        let mut parts = self.parts(&terms, freedoms, last_place(points));
         if let Motion::Free { mobilities } = self.motion {
-            let law = GrowthLaw::new(fans, points, &before, &terms);
+            let law = GrowthLaw::new(fans, points, &terms);
             self.follow(&law, mobilities, &mut parts);
         }
         let system = System::new(parts, time, tolerance);
         let (mut moves, pressures) = system.displacement(&missing);
         let mut moved = Vec::new();
         let neighbors = |point| self.neighbors(point, points);
-        GivingWay::new(neighbors, |point| freedoms[point as usize]).mend(&mut moves, |moves| {
+        GivingWay::new(neighbors, |point| fans.freedom(point as usize)).mend(&mut moves, |moves| {
             moved = points.iter().zip(moves).map(|(point, by)| *point + *by).collect();
-            self.broken(&before, &fans.normals(&moved))
+            self.broken_on_way(points, &moved)
         })?;
         *points = moved;
         let pressures = pressures.iter().map(|pressure| pressure / time).collect();
@@ -82,18 +81,11 @@ impl FanFlow<'_> {
 
     /// Moves centres within their boundaries, which changes no volume: in a step of its own, as it takes no time.
     pub(crate) fn center(&self, points: &mut [DVec3]) {
-        let normals = self.fans.normals(points);
-        let ways: Vec<DVec3> =
-            (0..self.fans.faces.len()).map(|fan| self.to_middle(fan, points, &normals)).collect();
+        let ways: Vec<DVec3> = (0..self.fans.faces.len()).map(|fan| self.to_middle(fan, points)).collect();
         for (fan, way) in ways.into_iter().enumerate() {
             let center = self.fans.center_of(fan);
             points[center] += self.fans.freedom(center).project(way);
         }
-    }
-
-    /// The points of triangles that the way between two places of all points turns or bends too far.
-    pub(crate) fn broken_on_way(&self, from: &[DVec3], to: &[DVec3]) -> Vec<[u32; 3]> {
-        self.broken(&self.fans.normals(from), &self.fans.normals(to))
     }
 
     /// As [`Fans::at_point`], but for walls.
@@ -103,6 +95,7 @@ impl FanFlow<'_> {
 
     /// The other ends of the edges of a point, fan by fan, and the distances to them.
     fn neighbors(&self, point: u32, points: &[DVec3]) -> Vec<(u32, f64)> {
+        let place = |slot| self.fans.position(slot, points);
         let of_slot = |(fan, slot): (usize, usize)| {
             let slots = self.fans.slots_of(fan);
             let (own, count) = (slots[slot], self.fans.rim_len(fan));
@@ -113,7 +106,7 @@ impl FanFlow<'_> {
             };
             others.into_iter().map(move |other| {
                 let other = slots[other];
-                (other.point, own.position(points).distance(other.position(points)))
+                (other.point, place(own).distance(place(other)))
             })
         };
         let neighbors = self.fans.at_point(point as usize).flat_map(of_slot);
@@ -124,12 +117,12 @@ impl FanFlow<'_> {
         (0..self.fans.point_count()).into_par_iter().with_min_len(CHUNK).map(of_point).collect()
     }
 
-    fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
+    fn parts(&self, terms: &FanTerms, freedoms: Vec<Freedom>, rounding: f64) -> Parts {
         let fans = self.fans;
-        let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
         let stiffness = |point: usize, row: &mut NewRow<'_, f64>| {
             for (fan, slot) in fans.at_point(point) {
                 let slots = fans.slots_of(fan);
+                let edges = &terms.stiffness[fans.first_slot(fan)..];
                 let count = fans.rim_len(fan);
                 let mut add = |slot: usize, stiffness: f64| {
                     let other = slots[slot].point;
@@ -138,33 +131,34 @@ impl FanFlow<'_> {
                     }
                 };
                 if slot == count {
-                    (0..count).for_each(|k| add(k, of_slot(fan, k).to_center));
+                    (0..count).for_each(|k| add(k, edges[k].to_center));
                 } else {
                     let before = (slot + count - 1) % count;
-                    add(before, of_slot(fan, before).rim);
-                    add((slot + 1) % count, of_slot(fan, slot).rim);
-                    add(count, of_slot(fan, slot).to_center);
+                    add(before, edges[before].rim);
+                    add((slot + 1) % count, edges[slot].rim);
+                    add(count, edges[slot].to_center);
                 }
             }
         };
         let volume_gradients = |point: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
             for (fan, slot) in self.inside_at(point) {
+                let gradient = terms.of_slot[fans.first_slot(fan) + slot].volume_gradient;
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
                     if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
-                        volume_gradients.add(GrainId(cell.0), of_slot(fan, slot).volume_gradient * sign);
+                        volume_gradients.add(GrainId(cell.0), gradient * sign);
                     }
                 }
             }
         };
         let gradient = |point: usize| -> DVec3 {
-            fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
+            fans.at_point(point).map(|(fan, slot)| terms.of_slot[fans.first_slot(fan) + slot].gradient).sum()
         };
         let of_junction = self.tuning.junction_softness.sqrt();
         // Walls have tension here, so that lines on them are junctions too.
         let softness_root = self.of_points(|point| if point < fans.center_of(0) { of_junction } else { 1.0 });
         let constraint = match self.motion {
             Motion::Kept { volumes, .. } => {
-                Some((VolumeConstraint::by_group(freedoms, rounding, volume_gradients), volumes.len()))
+                Some((VolumeConstraint::by_group(&freedoms, rounding, volume_gradients), volumes.len()))
             }
             Motion::Free { .. } => None,
         };
@@ -178,7 +172,7 @@ impl FanFlow<'_> {
             gradient: self.of_points(gradient),
             stiffness,
             softness_root,
-            freedoms: freedoms.to_vec(),
+            freedoms,
             volumes,
             sliding: match self.motion {
                 Motion::Kept { .. } => Vec::new(),
@@ -250,16 +244,16 @@ impl FanFlow<'_> {
     }
 
     /// A share of a centre's way to the middle of the triangles around, within their plane: those of a fan are thin where a line is short.
-    fn to_middle(&self, fan: usize, points: &[DVec3], normals: &[DVec3]) -> DVec3 {
+    fn to_middle(&self, fan: usize, points: &[DVec3]) -> DVec3 {
         let slots = self.fans.slots_of(fan);
         let count = slots.len() - 1;
-        let center = slots[count].position(points);
+        let place = |slot: usize| self.fans.position(slots[slot], points);
+        let center = place(count);
         let (mut way, mut normal, mut weights) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-        for k in 0..count {
+        for (k, of_triangle) in self.fans.normals_of(fan, points).enumerate() {
             // Triangles count by area: no line that comes near catches up with the middle, however many points it has.
-            let of_triangle = normals[self.fans.first_slot(fan) + k];
             let weight = of_triangle.length();
-            let ends = [k, (k + 1) % count].map(|slot| slots[slot].position(points) - center);
+            let ends = [k, (k + 1) % count].map(|slot| place(slot) - center);
             way += (ends[0] + ends[1]) * weight;
             normal += of_triangle;
             weights += 2.0 * weight;
@@ -269,35 +263,40 @@ impl FanFlow<'_> {
         within * (CENTERING / weights)
     }
 
-    /// The points of triangles that a step has turned too far, or bent too far and more than they were; given the normals before and after.
-    fn broken(&self, before: &[DVec3], after: &[DVec3]) -> Vec<[u32; 3]> {
+    /// The points of triangles that the way between two places of all points turns too far, or bends too far and more than they were.
+    pub(crate) fn broken_on_way(&self, from: &[DVec3], to: &[DVec3]) -> Vec<[u32; 3]> {
         let cosine = |normals: &[DVec3], [a, b]: [usize; 2]| {
             normals[a].normalize_or_zero().dot(normals[b].normalize_or_zero())
         };
-        let is_turned = |slot: usize| are_apart([before[slot], after[slot]], LARGEST_FOLD);
-        let is_bent = |pair: [usize; 2]| {
-            is_folded(pair.map(|slot| after[slot]), LARGEST_FOLD)
-                && cosine(after, pair) < cosine(before, pair) - rounding::OF_COSINES
-        };
-        let of_fan = |fan: usize| {
+        let of_fan = |[before, after]: &mut [Vec<DVec3>; 2], fan: usize| {
+            for (normals, points) in [(&mut *before, from), (&mut *after, to)] {
+                normals.clear();
+                normals.extend(self.fans.normals_of(fan, points));
+            }
+            let is_turned = |slot: usize| are_apart([before[slot], after[slot]], LARGEST_FOLD);
+            let is_bent = |pair: [usize; 2]| {
+                is_folded(pair.map(|slot| after[slot]), LARGEST_FOLD)
+                    && cosine(after, pair) < cosine(before, pair) - rounding::OF_COSINES
+            };
             let slots = self.fans.slots_of(fan);
-            let (count, first) = (slots.len() - 1, self.fans.first_slot(fan));
+            let count = slots.len() - 1;
             let mut broken = Vec::new();
             for k in 0..count {
                 let next = (k + 1) % count;
                 let mut add = |k: usize| {
                     broken.push([k, (k + 1) % count, count].map(|slot| slots[slot].point));
                 };
-                if is_turned(first + k) {
+                if is_turned(k) {
                     add(k);
                 }
-                if is_bent([first + k, first + next]) {
+                if is_bent([k, next]) {
                     add(k);
                     add(next);
                 }
             }
             broken
         };
-        (0..self.fans.faces.len()).into_par_iter().with_min_len(CHUNK).flat_map_iter(of_fan).collect()
+        let fans = (0..self.fans.faces.len()).into_par_iter().with_min_len(CHUNK);
+        fans.map_init(<[Vec<DVec3>; 2]>::default, of_fan).flatten_iter().collect()
     }
 }

@@ -10,13 +10,12 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
 
-use glam::{DMat3, DVec3, IVec3};
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
-use voronoi::CellId;
+use voronoi::{CellId, Translation};
 
 use crate::Freedom;
 use crate::energy::fans::{FanTerms, Fans};
-use crate::energy::sides::cell_and_offset;
 use crate::flow::pressure_response::CHUNK;
 
 /// Least determinant of the conditions at a point, in units of the product of their lengths, by which its velocity is taken to be determined.
@@ -36,7 +35,7 @@ pub(crate) struct GrowthLaw<'a> {
 struct Around {
     grain: CellId,
     /// By how many periods its own place is away from where it is here.
-    periods: IVec3,
+    periods: Translation,
     /// Volume that the grain gains per displacement of the point.
     gain: DVec3,
     /// What of its rate belongs to the point.
@@ -46,10 +45,10 @@ struct Around {
 /// A triangle at an edge of boundaries, as a grain beside it sees it from outside.
 struct Facet {
     /// The other end of the edge, and by how many periods it is away from its own place.
-    end: (u32, [i32; 3]),
+    end: (u32, Translation),
     grain: CellId,
     /// As of [`Around`].
-    periods: [i32; 3],
+    periods: Translation,
     is_wall: bool,
     normal: DVec3,
     /// The edge as it runs around the triangle.
@@ -59,21 +58,25 @@ struct Facet {
 }
 
 impl<'a> GrowthLaw<'a> {
-    /// The law for fans with these points, given their normals and terms too.
-    pub(crate) fn new(fans: &'a Fans, points: &[DVec3], normals: &[DVec3], terms: &'a FanTerms) -> Self {
+    /// The law for fans with these points, given their terms too.
+    pub(crate) fn new(fans: &'a Fans, points: &[DVec3], terms: &'a FanTerms) -> Self {
+        let all = || (0..fans.faces.len()).into_par_iter().with_min_len(CHUNK);
+        // Of each slot; of centres nothing.
+        let normals_of = |fan: usize| fans.normals_of(fan, points).chain([DVec3::ZERO]);
+        let normals: Vec<DVec3> = all().flat_map_iter(normals_of).collect();
         let spokes = |fan: usize| {
             let (slots, normals) = (fans.slots_of(fan), &normals[fans.first_slot(fan)..]);
             let count = slots.len() - 1;
-            let spoke = |slot: usize| slots[slot].position(points) - slots[count].position(points);
+            let place = |slot: usize| fans.position(slots[slot], points);
+            let spoke = |slot: usize| place(slot) - place(count);
             let of_slot =
                 move |slot| bend(spoke(slot), [normals[slot], normals[(slot + count - 1) % count]], 0.0);
             (0..count).map(of_slot).chain([0.0]).collect::<Vec<f64>>()
         };
-        let all = (0..fans.faces.len()).into_par_iter().with_min_len(CHUNK);
-        let of_spoke: Vec<f64> = all.flat_map_iter(spokes).collect();
+        let of_spoke: Vec<f64> = all().flat_map_iter(spokes).collect();
         let mut of_rim = vec![[0.0; 2]; of_spoke.len()];
         let lines = (0..fans.lines.len()).into_par_iter().with_min_len(CHUNK);
-        let rims: Vec<_> = lines.flat_map_iter(|line| rims_at(line, fans, points, normals)).collect();
+        let rims: Vec<_> = lines.flat_map_iter(|line| rims_at(line, fans, points, &normals)).collect();
         rims.into_iter().for_each(|((slot, side), value)| of_rim[slot][side] = value);
         Self { fans, terms, of_rim, of_spoke }
     }
@@ -140,15 +143,15 @@ fn rims_at(line: usize, fans: &Fans, points: &[DVec3], normals: &[DVec3]) -> Vec
         let count = slots.len() - 1;
         let (before, next) = ((slot + count - 1) % count, (slot + 1) % count);
         for (other, start, run) in [(next, slot, 1.0), (before, before, -1.0)] {
-            let end =
-                (slots[other].point, periods(slots[other].offset - slots[slot].offset, fans).to_array());
-            let edge = (slots[other].position(points) - slots[slot].position(points)) * run;
+            let place = |slot: usize| fans.position(slots[slot], points);
+            let end = (slots[other].point, slots[other].translation - slots[slot].translation);
+            let edge = (place(other) - place(slot)) * run;
             for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let Some((grain, periods)) = grain_at(fans, fan, slot, side) else { continue };
                 facets.push(Facet {
                     end,
                     grain,
-                    periods: periods.to_array(),
+                    periods,
                     is_wall: fans.wall(fan).is_some(),
                     normal: normals[first + start] * sign,
                     edge: edge * sign,
@@ -181,13 +184,9 @@ fn rims_at(line: usize, fans: &Fans, points: &[DVec3], normals: &[DVec3]) -> Vec
 }
 
 /// The grain on a side of a fan, and by how many periods its own place is away from where it is at a slot; none beyond walls.
-fn grain_at(fans: &Fans, fan: usize, slot: usize, side: usize) -> Option<(CellId, IVec3)> {
-    let (grain, offset) = cell_and_offset(fans.sides[fan][side], fans.domain())?;
-    Some((grain, periods(offset - fans.slots_of(fan)[slot].offset, fans)))
-}
-
-fn periods(offset: DVec3, fans: &Fans) -> IVec3 {
-    (offset / fans.domain().size()).round().as_ivec3()
+fn grain_at(fans: &Fans, fan: usize, slot: usize, side: usize) -> Option<(CellId, Translation)> {
+    let (grain, translation) = fans.sides[fan][side].cell()?;
+    Some((grain, translation - fans.slots_of(fan)[slot].translation))
 }
 
 /// The length of an edge times the angle between the normals of its triangles, of which the first one has the edge run around it; positive where convex. Less the angle at rest.
@@ -224,9 +223,8 @@ mod tests {
 
     /// How fast each grain gains volume, where all of its points have velocities.
     fn gains(complex: &CellComplex, fans: &Fans, points: &[DVec3]) -> Vec<Option<f64>> {
-        let normals = fans.normals(points);
         let terms = fans.terms(points, 50.0);
-        let law = GrowthLaw::new(fans, points, &normals, &terms);
+        let law = GrowthLaw::new(fans, points, &terms);
         let mut gains = vec![Some(0.0); complex.cell_count()];
         for point in 0..points.len() {
             let velocity = law.velocity(point, fans.freedom(point));
@@ -266,8 +264,8 @@ mod tests {
             CellComplex::from(&Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds"));
         let fans = Fans::new(&complex, &|_| 1.0);
         let points = Shape::default().points(&complex, &fans);
-        let (normals, terms) = (fans.normals(&points), fans.terms(&points, 50.0));
-        let law = GrowthLaw::new(&fans, &points, &normals, &terms);
+        let terms = fans.terms(&points, 50.0);
+        let law = GrowthLaw::new(&fans, &points, &terms);
         let lean = 0.25f64.atan();
         let mut moved = 0;
         for (line, ends) in fans.lines.iter().enumerate() {

@@ -76,7 +76,7 @@ pub(crate) fn settle(
         show(steps, &complex, &shape);
         let conditions =
             Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: &pressures };
-        let mut excess = fans.volumes(volumes.len(), &points, &fans.normals(&points));
+        let mut excess = fans.volumes(volumes.len(), &points);
         excess.iter_mut().zip(volumes).for_each(|(volume, wanted)| *volume -= wanted);
         let events = reconnector.pass(&mut complex, &conditions, &before, &mut excess);
         reconnections.add(events);

@@ -97,11 +97,9 @@ impl<'a> Sheets<'a> {
 
     /// Gives a grain to the neighbour that it shares the largest boundary with, of those that can have it: to which one.
     fn vanish(&mut self, cell: CellId) -> Option<CellId> {
-        let normals = self.fans.normals(&self.points);
         let area = |face: FaceId| {
             let fan = self.fans.faces.binary_search(&face).expect("each face has a fan");
-            let first = self.fans.first_slot(fan);
-            normals[first..first + self.fans.rim_len(fan)].iter().map(|normal| normal.length()).sum::<f64>()
+            self.fans.normals_of(fan, &self.points).map(DVec3::length).sum::<f64>()
         };
         let beyond = |face: FaceId| {
             let sides = self.complex.sides(face);
@@ -171,7 +169,7 @@ impl Evolution for Sheets<'_> {
     }
 
     fn volumes(&self, points: &Vec<DVec3>) -> Vec<f64> {
-        self.fans.volumes(self.complex.cell_count(), points, &self.fans.normals(points))
+        self.fans.volumes(self.complex.cell_count(), points)
     }
 }
 
