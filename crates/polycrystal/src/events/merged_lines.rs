@@ -26,15 +26,20 @@ impl MergedLines {
     /// Draws lines shorter than `length` together, as [`remove_short_edges`] has it; the others keep their bulges.
     pub(crate) fn new(complex: &CellComplex, shape: &Shape, length: f64) -> Self {
         let (all, corners) = complex.tessellation();
-        let known = lines_of(&all).map(|Line { sides, ends, middle }| {
-            let bulge = shape.bulge_of_line(line_of(&corners, ends));
-            Known { sides, middle, bulge }
-        });
-        let known = sorted(known.collect());
-        let (cells, collapsed) = remove_short_edges(&all, length);
+        let known_lines = || {
+            let known = lines_of(&all).map(|Line { sides, ends, middle }| {
+                let bulge = shape.bulge_of_line(line_of(&corners, ends));
+                Known { sides, middle, bulge }
+            });
+            sorted(known.collect())
+        };
+        // To draw lines together takes one thread.
+        let ((cells, collapsed), known) = rayon::join(|| remove_short_edges(&all, length), known_lines);
         let curved = |Line { sides, middle, .. }: Line| middle + bulge(&known, &sides, middle);
-        let middles = lines_of(&cells).map(curved).collect();
-        let centers = centers_of(complex, shape, &all, &cells);
+        let (middles, centers) = rayon::join(
+            || lines_of(&cells).map(curved).collect(),
+            || centers_of(complex, shape, &all, &cells),
+        );
         Self { cells, middles, centers, collapsed }
     }
 }

@@ -351,7 +351,7 @@ impl<'a> Flow<'a> {
     }
 }
 
-fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
+pub(crate) fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
     points.par_iter().zip(moves).with_min_len(CHUNK).map(|(point, by)| *point + *by).collect()
 }
 

@@ -7,7 +7,7 @@ use crate::energy::fans::{FanTerms, Fans};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
-use crate::flow::boundary_flow::FREE_TOLERANCE;
+use crate::flow::boundary_flow::{FREE_TOLERANCE, displaced};
 use crate::flow::giving_way::GivingWay;
 use crate::flow::growth_law::GrowthLaw;
 use crate::flow::pressure_response::CHUNK;
@@ -71,7 +71,7 @@ impl FanFlow<'_> {
         let mut moved = Vec::new();
         let neighbors = |point| self.neighbors(point, points);
         GivingWay::new(neighbors, |point| fans.freedom(point as usize)).mend(&mut moves, |moves| {
-            moved = points.iter().zip(moves).map(|(point, by)| *point + *by).collect();
+            moved = displaced(points, moves);
             self.broken_on_way(points, &moved)
         })?;
         *points = moved;

@@ -23,12 +23,12 @@ impl PressureResponse {
     /// That of unknowns that resist so much; without a constraint volumes are free.
     pub(crate) fn new(resistance: &[f64], freedoms: &[Freedom], volumes: Option<VolumeConstraint>) -> Self {
         let one_over = |resistance: &f64| if *resistance > 0.0 { 1.0 / resistance } else { 0.0 };
-        let mobility: Vec<f64> = resistance.iter().map(one_over).collect();
+        let mobility: Vec<f64> = resistance.par_iter().with_min_len(CHUNK).map(one_over).collect();
         let constraint = volumes.map(|constraint| {
             let compliance = constraint.compliance(&mobility);
             (constraint, compliance)
         });
-        let freedoms = freedoms.iter().copied().enumerate();
+        let freedoms = freedoms.par_iter().copied().enumerate().with_min_len(CHUNK);
         let held = freedoms.filter(|(_, freedom)| *freedom != Freedom::Everywhere).collect();
         Self { mobility, held, constraint }
     }

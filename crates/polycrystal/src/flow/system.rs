@@ -2,6 +2,7 @@
 
 use cancellation::check_cancelled;
 use glam::{DMat3, DVec3};
+use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
 use crate::Freedom;
@@ -95,7 +96,7 @@ impl System {
             let gradient = gradient_after(&displacement);
             let mut left: Vec<DVec3> = gradient.iter().map(|gradient| *gradient * -self.time).collect();
             // Of the matrix the mass alone counts: the gradient after the displacement has all of the stiffness.
-            let mut image = vec![DVec3::ZERO; left.len()];
+            let mut image = zeros(left.len());
             self.apply(&displacement, &mut image);
             add(&mut left, -1.0, &image);
             add(&mut left, 1.0, &self.stiff(&displacement));
@@ -121,14 +122,13 @@ impl System {
     fn solve(&self, forces: &[DVec3], changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
         let mut pressures = vec![0.0; changes.len()];
         let mut displacement = self.response.displacement(changes);
-        let mut residual = forces.to_vec();
+        let mut residual = copy(forces);
         self.response.hold(&mut residual);
-        let mut image = vec![DVec3::ZERO; residual.len()];
+        let [mut image, mut projected] = [(); 2].map(|()| zeros(residual.len()));
         self.apply(&displacement, &mut image);
         add(&mut residual, -1.0, &image);
-        let mut projected = vec![DVec3::ZERO; residual.len()];
         let mut size = self.project(&mut residual, &mut projected, &mut pressures);
-        let mut direction = projected.clone();
+        let mut direction = copy(&projected);
         let enough = size * self.tolerance * self.tolerance;
         for _ in 0..ITERATIONS {
             check_cancelled();
@@ -213,6 +213,16 @@ pub(crate) fn softened(softness_root: &[f64]) -> impl Fn(usize, u32, f64) -> f32
         let softened = stiffness / (softness_root[row] * softness_root[column as usize]);
         softened.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
     }
+}
+
+/// A copy that all threads make: the system hands fresh memory out page by page, and takes its time.
+fn copy(vector: &[DVec3]) -> Vec<DVec3> {
+    vector.par_iter().with_min_len(CHUNK).copied().collect()
+}
+
+/// The same of a vector of nothing.
+fn zeros(len: usize) -> Vec<DVec3> {
+    repeat_n(DVec3::ZERO, len).with_min_len(CHUNK).collect()
 }
 
 /// Adds a multiple of a vector to another one.

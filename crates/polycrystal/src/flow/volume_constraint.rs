@@ -76,12 +76,14 @@ impl VolumeConstraint {
     /// `J D J^T` for groups that move by D under a force of one.
     pub(crate) fn compliance(&self, mobility: &[f64]) -> Compliance {
         let row = |grain: usize, row: &mut NewRow<'_, f64>| {
+            // All products before any sum: groups come from all over the memory, and to look for a column waits for each of them.
+            let mut products = Vec::new();
             for (group, gradient) in self.by_grain.row(grain) {
                 let moved = *gradient * mobility[*group as usize];
-                for (other, gradient) in self.by_group.row(*group as usize) {
-                    row.add(*other, moved.dot(*gradient));
-                }
+                let others = self.by_group.row(*group as usize).iter();
+                products.extend(others.map(|(other, gradient)| (*other, moved.dot(*gradient))));
             }
+            products.into_iter().for_each(|(other, product)| row.add(other, product));
         };
         Compliance::new(CsrRows::made_by(self.by_grain.len(), row))
     }

@@ -144,29 +144,32 @@ fn surfaces(
         Junctions::Corner => points.len(),
     };
 
-    let (mut meetings, at_lines) = junctions_of(tessellation, &edges, &copied_lines);
-    let counts = JunctionCounts::new(
-        originals(&at_lines, copied_lines.iter().map(|pair| pair.secondary)),
-        originals(&meetings, copied_vertices(tessellation)),
-    );
-    meetings.extend(lines.lines().map(|line| at_lines[line]));
-    let ends = edges.ends.iter().map(|ends| ends.map(voronoi::VertexId::index));
-    let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, ends);
-    let walls_of_line = |line: usize| {
-        let [start, end] = edges.ends[line];
-        wall_sets.intersection(walls[start.index()], walls[end.index()])
+    let along_lines = || {
+        let (mut meetings, at_lines) = junctions_of(tessellation, &edges, &copied_lines);
+        let counts = JunctionCounts::new(
+            originals(&at_lines, copied_lines.iter().map(|pair| pair.secondary)),
+            originals(&meetings, copied_vertices(tessellation)),
+        );
+        meetings.extend(lines.lines().map(|line| at_lines[line]));
+        let ends = edges.ends.iter().map(|ends| ends.map(voronoi::VertexId::index));
+        let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, ends);
+        let walls_of_line = |line: usize| {
+            let [start, end] = edges.ends[line];
+            wall_sets.intersection(walls[start.index()], walls[end.index()])
+        };
+        let on_lines: Vec<WallSet> = lines.lines().map(walls_of_line).collect();
+        walls.extend(on_lines);
+        let creases = (0u32..).zip(&edges.ends).flat_map(|(line, ends)| {
+            let along = lines.whole_line(line, *ends);
+            along.windows(2).map(|ends| Crease::infinite([ends[0], ends[1]])).collect::<Vec<_>>()
+        });
+        (meetings, at_lines, counts, wall_sets, walls, creases.collect::<Vec<_>>())
     };
-    let on_lines: Vec<WallSet> = lines.lines().map(walls_of_line).collect();
-    walls.extend(on_lines);
-
-    let faces = triangulate_faces(
-        tessellation,
-        &edges,
-        &lines,
-        &points,
-        face_mesh,
-        curved.map(|[_, centers]| centers),
-    );
+    let centers = curved.map(|[_, centers]| centers);
+    let fill_faces = || triangulate_faces(tessellation, &edges, &lines, &points, face_mesh, centers);
+    // What lines are takes one thread.
+    let ((mut meetings, at_lines, counts, wall_sets, mut walls, creases), faces) =
+        rayon::join(along_lines, fill_faces);
     let mut copies = PeriodicCopies::of_vertices(tessellation);
     copies.vertices.extend(lines.copies(tessellation, &edges.ends, &copied_lines));
     let of_faces: Vec<[usize; 2]> =
@@ -205,13 +208,6 @@ fn surfaces(
     // Dividing lines and faces may miss a wall by a last place.
     points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
 
-    let creases: Vec<Crease> = (0u32..)
-        .zip(&edges.ends)
-        .flat_map(|(line, ends)| {
-            let along = lines.whole_line(line, *ends);
-            along.windows(2).map(|ends| Crease::infinite([ends[0], ends[1]])).collect::<Vec<_>>()
-        })
-        .collect();
     let corners: Vec<u32> = (0..id(corner_count)).collect();
     let features = Features { creases: &creases, corners: &corners, ..Features::default() };
     check_cancelled();

@@ -19,7 +19,7 @@ pub(crate) struct CsrRows<T> {
 #[derive(Debug)]
 struct Block<T> {
     /// Where each row starts, and the end.
-    starts: Vec<usize>,
+    starts: Vec<u32>,
     entries: Vec<(u32, T)>,
 }
 
@@ -49,7 +49,7 @@ impl<T> CsrRows<T> {
             for row in block * ROWS_PER_TASK..len.min((block + 1) * ROWS_PER_TASK) {
                 fill(row, &mut NewRow { entries: &mut sums });
                 entries.extend(sums.drain(..).map(|(column, sum)| (column, value(row, column, sum))));
-                starts.push(entries.len());
+                starts.push(id(entries.len()));
             }
             entries.shrink_to_fit();
             Block { starts, entries }
@@ -62,11 +62,11 @@ impl<T> CsrRows<T> {
     where
         T: Copy + Default,
     {
-        let mut counts = vec![0; column_count];
+        let mut counts = vec![0_u32; column_count];
         for (column, _) in self.blocks.iter().flat_map(|block| &block.entries) {
             counts[*column as usize] += 1;
         }
-        let block = |counts: &mut [usize]| {
+        let block = |counts: &mut [u32]| {
             let mut starts = vec![0];
             let mut end = 0;
             for count in counts {
@@ -74,15 +74,14 @@ impl<T> CsrRows<T> {
                 end += std::mem::replace(count, end);
                 starts.push(end);
             }
-            Block { starts, entries: vec![(0, T::default()); end] }
+            Block { starts, entries: vec![(0, T::default()); end as usize] }
         };
         let mut blocks: Vec<Block<T>> = counts.chunks_mut(ROWS_PER_TASK).map(block).collect();
         let mut next = counts;
         for row in 0..self.len {
-            let id = u32::try_from(row).expect("a matrix has no more rows than ids");
             for (column, value) in self.row(row) {
                 let column = *column as usize;
-                blocks[column / ROWS_PER_TASK].entries[next[column]] = (id, *value);
+                blocks[column / ROWS_PER_TASK].entries[next[column] as usize] = (id(row), *value);
                 next[column] += 1;
             }
         }
@@ -93,7 +92,7 @@ impl<T> CsrRows<T> {
     pub(crate) fn row(&self, row: usize) -> &[(u32, T)] {
         let Block { starts, entries } = &self.blocks[row / ROWS_PER_TASK];
         let row = row % ROWS_PER_TASK;
-        &entries[starts[row]..starts[row + 1]]
+        &entries[starts[row] as usize..starts[row + 1] as usize]
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -126,6 +125,10 @@ impl<T: AddAssign> NewRow<'_, T> {
             None => false,
         });
     }
+}
+
+fn id(index: usize) -> u32 {
+    u32::try_from(index).expect("a matrix has no more rows than ids, and a block no more entries")
 }
 
 impl CsrRows<f64> {
