@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use voronoi::{CellId, Domain, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
 use crate::complex::edge::ComplexEdge;
+use crate::mesh::id::id;
 
 /// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
 /// periodic domain.
@@ -204,8 +205,4 @@ impl Face {
 
 pub(super) fn cell_of(side: Side) -> Option<CellId> {
     side.cell().map(|(cell, _)| cell)
-}
-
-pub(super) fn id(index: usize) -> u32 {
-    u32::try_from(index).expect("ids fit 32 bits")
 }

@@ -3,8 +3,9 @@
 
 use voronoi::{CellId, FaceId, PeriodicVertex, Side, Translation, Wall};
 
-use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
+use crate::complex::cell_complex::{CellComplex, Face, cell_of};
 use crate::complex::star::FaceAt;
+use crate::mesh::id::id;
 
 /// An end of an edge in the plane, as the vertex there sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,9 +6,10 @@
 use glam::DVec3;
 use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
-use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
+use crate::complex::cell_complex::{CellComplex, Face, cell_of};
 use crate::complex::edge::ComplexEdge;
 use crate::complex::star::{FaceAt, Star};
+use crate::mesh::id::id;
 
 /// Fewest corners of a face that loses one: no face may be left with two.
 const FEWEST_CORNERS: usize = 4;

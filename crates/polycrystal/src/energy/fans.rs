@@ -14,6 +14,7 @@ use crate::energy::sides::{cell_and_offset, freedom_on, tension_between};
 use crate::energy::triangle::Triangle;
 use crate::mesh::fold::is_folded;
 use crate::mesh::grouped::{Grouped, split};
+use crate::mesh::id::id;
 use crate::mesh::volume::{Cone, ConeSum};
 use crate::{Boundary, CellComplex, ComplexEdge, Freedom};
 
@@ -108,10 +109,6 @@ impl Fans {
         let tensions = || sides.par_iter().map(|sides| tension_between(*sides, tension)).collect();
         let (of_point, tensions) = rayon::join(of_point, tensions);
         Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
-    }
-
-    pub(crate) fn domain(&self) -> &Domain {
-        &self.domain
     }
 
     /// Number of vertices, which come first among the points.
@@ -297,8 +294,4 @@ fn line_between(from: PeriodicVertex, to: PeriodicVertex) -> (ComplexEdge, Trans
     let starts_here = line.start == from.vertex
         && line.end == PeriodicVertex { vertex: to.vertex, translation: to.translation - from.translation };
     (line, if starts_here { from.translation } else { to.translation })
-}
-
-fn id(number: usize) -> u32 {
-    u32::try_from(number).expect("ids fit 32 bits")
 }

@@ -5,10 +5,9 @@
 //! grows as one over the square of the size, and lengths that count as short shrink with it.
 
 use rayon::prelude::*;
-use voronoi::Dimension;
+use voronoi::{Dimension, Side};
 
 use crate::energy::patches::Patches;
-use crate::energy::sides::cell_and_offset;
 use crate::mesh::id::id;
 use crate::{Boundary, CellComplex, Network, Volumes};
 
@@ -34,8 +33,10 @@ impl LocalSize {
     pub(crate) fn at_vertices(self, complex: &CellComplex, vertices: &[u32], volumes: &[f64]) -> f64 {
         let faces = complex.faces_at(vertices);
         let sides = faces.into_iter().flat_map(|face| complex.sides(face));
-        let cells = sides.filter_map(|side| cell_and_offset(side, complex.domain()));
-        cells.map(|(cell, _)| self.of_volume(volumes[cell.index()])).fold(1.0, f64::min)
+        sides
+            .filter_map(Side::cell)
+            .map(|(cell, _)| self.of_volume(volumes[cell.index()]))
+            .fold(1.0, f64::min)
     }
 
     /// That of the smallest grain at each control point of a level. Where grains grow, time is the same for all, and so is 1.

@@ -2,10 +2,10 @@
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
+use voronoi::Side;
 
 use crate::energy::fans::{FanTerms, Fans};
 use crate::energy::local_size::LocalSize;
-use crate::energy::sides::cell_and_offset;
 use crate::flow::assembly::sliding_mass;
 use crate::flow::boundary_flow::{FREE_TOLERANCE, displaced};
 use crate::flow::giving_way::GivingWay;
@@ -144,7 +144,7 @@ impl FanFlow<'_> {
             for (fan, slot) in self.inside_at(point) {
                 let gradient = terms.of_slot[fans.first_slot(fan) + slot].volume_gradient;
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
-                    if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
+                    if let Some((cell, _)) = side.cell() {
                         volume_gradients.add(GrainId(cell.0), gradient * sign);
                     }
                 }
@@ -209,8 +209,7 @@ impl FanFlow<'_> {
         match self.motion {
             Motion::Kept { volumes, size } => {
                 let of_fan = |fan: usize| {
-                    let cells =
-                        fans.sides[fan].into_iter().filter_map(|side| cell_and_offset(side, fans.domain()));
+                    let cells = fans.sides[fan].into_iter().filter_map(Side::cell);
                     let sizes = cells.map(|(cell, _)| size.of_volume(volumes[cell.index()]));
                     sizes.fold(1.0, f64::min)
                 };

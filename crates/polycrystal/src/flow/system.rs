@@ -124,7 +124,7 @@ impl System {
         let mut displacement = self.response.displacement(changes);
         let mut residual = copy(forces);
         self.response.hold(&mut residual);
-        let [mut image, mut projected] = [(); 2].map(|()| zeros(residual.len()));
+        let (mut image, mut projected) = (zeros(residual.len()), zeros(residual.len()));
         self.apply(&displacement, &mut image);
         add(&mut residual, -1.0, &image);
         let mut size = self.project(&mut residual, &mut projected, &mut pressures);

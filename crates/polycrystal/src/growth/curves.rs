@@ -12,6 +12,7 @@ use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::events::reconnection::Reconnections;
 use crate::flow::adaptive_steps::Evolution;
 use crate::flow::recipe::{Certified, RelaxedCells};
+use crate::mesh::id::id;
 use crate::{CellComplex, Mesh, Network, NetworkError, Relaxed, Volumes};
 
 /// Fewest segments of an edge.
@@ -292,8 +293,4 @@ fn evenly(line: &[DVec2], count: usize) -> Vec<DVec2> {
         a * (2.0 * t3 - 3.0 * t2 + 1.0) + u * (t3 - 2.0 * t2 + t) + b * (3.0 * t2 - 2.0 * t3) + v * (t3 - t2)
     };
     (1..count).map(&mut point).collect()
-}
-
-fn id(number: usize) -> u32 {
-    u32::try_from(number).expect("ids fit 32 bits")
 }

@@ -5,6 +5,8 @@ use std::ops::AddAssign;
 use cancellation::check_cancelled;
 use rayon::prelude::*;
 
+use crate::mesh::id::id;
+
 /// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
 const ROWS_PER_TASK: usize = 1024;
 
@@ -125,10 +127,6 @@ impl<T: AddAssign> NewRow<'_, T> {
             None => false,
         });
     }
-}
-
-fn id(index: usize) -> u32 {
-    u32::try_from(index).expect("a matrix has no more rows than ids, and a block no more entries")
 }
 
 impl CsrRows<f64> {
