@@ -31,35 +31,33 @@ pub(crate) struct Unknowns<'a> {
 pub(crate) fn assemble(
     network: &Network,
     patches: &Patches,
-    terms: &Terms,
+    terms: Terms,
     unknowns: &Unknowns<'_>,
     volumes: Volumes,
 ) -> Parts {
     let Unknowns { level, groups, .. } = *unknowns;
-    let row = |group: usize, row: &mut NewRow<'_, f64>| {
-        links(patches, terms, groups, group).for_each(|(other, stiffness)| row.add(other, stiffness));
-    };
     let freedoms = freedoms(network, unknowns);
     let softness_root = softness_root(unknowns, volumes);
     let by_group =
-        (volumes == Volumes::Kept).then(|| volume_gradients(network, patches, terms, unknowns, &freedoms));
+        (volumes == Volumes::Kept).then(|| volume_gradients(network, patches, &terms, unknowns, &freedoms));
+    let masses = masses(patches, &terms, unknowns);
+    let gradient = gradient(patches, &terms, groups);
+    let sliding = match volumes {
+        Volumes::Kept => Vec::new(),
+        Volumes::Free => sliding_masses(patches, &terms, groups, level),
+    };
+    // Most of what a step holds up to here, and nothing of it is asked for again.
+    drop(terms.of_place);
+    let row = |group: usize, row: &mut NewRow<'_, f64>| {
+        links(patches, &terms.stiffness, groups, group)
+            .for_each(|(other, stiffness)| row.add(other, stiffness));
+    };
     // To transpose a matrix takes one thread.
     let (stiffness, constraint) = rayon::join(
         || CsrRows::made_of_sums(groups.group_count(), row, softened(&softness_root)),
         || by_group.map(|by_group| VolumeConstraint::new(by_group, network.grain_count())),
     );
-    Parts {
-        masses: masses(patches, terms, unknowns),
-        gradient: gradient(patches, terms, groups),
-        stiffness,
-        softness_root,
-        volumes: constraint,
-        freedoms,
-        sliding: match volumes {
-            Volumes::Kept => Vec::new(),
-            Volumes::Free => sliding_masses(patches, terms, groups, level),
-        },
-    }
+    Parts { masses, gradient, stiffness, softness_root, volumes: constraint, freedoms, sliding }
 }
 
 /// How some unknowns give way to pressures where their stiffness alone resists, and volumes are kept.
@@ -69,13 +67,15 @@ pub(crate) fn assemble(
 pub(crate) fn pressure_response(
     network: &Network,
     patches: &Patches,
-    terms: &Terms,
+    terms: Terms,
     unknowns: &Unknowns<'_>,
 ) -> PressureResponse {
     let freedoms = freedoms(network, unknowns);
-    let by_group = volume_gradients(network, patches, terms, unknowns, &freedoms);
+    let by_group = volume_gradients(network, patches, &terms, unknowns, &freedoms);
+    let stiffnesses = stiffnesses(patches, &terms.stiffness, unknowns.groups);
+    drop(terms);
     let constraint = VolumeConstraint::new(by_group, network.grain_count());
-    PressureResponse::new(&stiffnesses(patches, terms, unknowns.groups), &freedoms, Some(constraint))
+    PressureResponse::new(&stiffnesses, &freedoms, Some(constraint))
 }
 
 fn in_chunks(groups: &Numbering) -> impl IndexedParallelIterator<Item = usize> {
@@ -115,21 +115,21 @@ fn masses(patches: &Patches, terms: &Terms, Unknowns { sizes, groups, .. }: &Unk
 }
 
 /// What holds each group to the others.
-fn stiffnesses(patches: &Patches, terms: &Terms, groups: &Numbering) -> Vec<f64> {
-    let stiffness = |group: usize| links(patches, terms, groups, group).map(|(_, stiffness)| stiffness).sum();
+fn stiffnesses(patches: &Patches, of_edges: &[f64], groups: &Numbering) -> Vec<f64> {
+    let stiffness =
+        |group: usize| links(patches, of_edges, groups, group).map(|(_, stiffness)| stiffness).sum();
     in_chunks(groups).map(stiffness).collect()
 }
 
-/// The groups at the other ends of a group's edges, boundary by boundary, and the stiffness of these edges.
+/// The groups at the other ends of a group's edges, boundary by boundary, and what stiffness these edges have.
 fn links(
     patches: &Patches,
-    terms: &Terms,
+    of_edges: &[f64],
     groups: &Numbering,
     group: usize,
 ) -> impl Iterator<Item = (u32, f64)> {
     let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
-    let to_groups =
-        links.map(|[end, edge]| (groups.numbers()[*end as usize], terms.stiffness[*edge as usize]));
+    let to_groups = links.map(|[end, edge]| (groups.numbers()[*end as usize], of_edges[*edge as usize]));
     to_groups.filter(move |(other, _)| *other as usize != group)
 }
 

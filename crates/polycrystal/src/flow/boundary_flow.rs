@@ -245,7 +245,7 @@ impl<'a> Flow<'a> {
         Some(Defects { has_folds: !folds.is_empty(), residual })
     }
 
-    fn system(&self, terms: &Terms, groups: &Numbering, time: f64, points: &[DVec3]) -> System {
+    fn system(&self, terms: Terms, groups: &Numbering, time: f64, points: &[DVec3]) -> System {
         let tolerance = match self.volumes {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,

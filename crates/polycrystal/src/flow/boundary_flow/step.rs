@@ -42,7 +42,8 @@ impl Flow<'_> {
         let missing = self.missing(&volumes);
         let groups = self.with_short_edges(&self.tied, points).number();
         check_cancelled();
-        let system = self.system(&terms, &groups, time, points);
+        let energy = terms.energy;
+        let system = self.system(terms, &groups, time, points);
         let mut moves = match (self.volumes, self.network.domain().dimension()) {
             (Volumes::Kept, _) | (_, Dimension::Three) => system.displacement(&missing).0,
             (Volumes::Free, Dimension::Two) => {
@@ -82,7 +83,7 @@ impl Flow<'_> {
         }
         drop(giving_way);
         (*points, *surface) = after;
-        Ok(Taken { energy: terms.energy, broken: broken_first.unwrap_or_default() })
+        Ok(Taken { energy, broken: broken_first.unwrap_or_default() })
     }
 
     /// What gives way where groups of points start from here.

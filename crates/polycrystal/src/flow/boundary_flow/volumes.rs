@@ -56,7 +56,7 @@ impl Flow<'_> {
             let groups = groups.number();
             let terms = self.patches.terms(start);
             let response =
-                pressure_response(self.network, &self.patches, &terms, &self.unknowns(start, &groups));
+                pressure_response(self.network, &self.patches, terms, &self.unknowns(start, &groups));
             (groups, response)
         });
         let mut last: Option<Vec<f64>> = None;
@@ -79,6 +79,8 @@ impl Flow<'_> {
             {
                 return Ok(surface);
             }
+            // A correction has a surface of its own: on the finest level there is room for one.
+            drop(surface);
             let (groups, response) = &*response;
             // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
             let is_hopeless = relative_error.is_nan() || relative_error >= 1.0 || !response.can_change(grain);
