@@ -1,6 +1,9 @@
 //! A tree of boxes for finding what overlaps.
 
 use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::mesh::id::id;
 
 /// A box with sides along the axes.
 #[derive(Debug, Clone, Copy)]
@@ -89,6 +92,12 @@ const BRANCHES: usize = 4;
 /// items as many times as there are leaves.
 const LARGEST_SPREAD: f64 = 16.0;
 
+/// Leaves whose overlaps one task looks for: enough to be worth a task, and few enough for all threads to have some.
+const LEAVES_PER_TASK: usize = 64;
+
+/// Most items that one task sorts.
+const SORTED_BY_ONE: usize = 4096;
+
 /// A node: its level above the leaves, and its number there and in the list of all boxes.
 #[derive(Debug, Clone, Copy)]
 struct Node {
@@ -98,30 +107,27 @@ struct Node {
 }
 
 impl BoxTree {
-    /// The tree of some items with these boxes.
+    /// The tree of some items with these boxes. They stay in their order where neighbours in it lie together.
     pub(crate) fn new(items: Vec<u32>, bounds: impl Fn(u32) -> Bounds) -> Self {
         let mut tree = Self { items, boxes: Vec::new() };
         let leaves = tree.items.len().div_ceil(LEAF_SIZE);
         tree.boxes.reserve_exact(leaves + leaves / (BRANCHES - 1) + 2);
         let spread = tree.add_leaves(&bounds);
         if leaves > 2 && spread > LARGEST_SPREAD {
-            let mut middles: Vec<(u32, DVec3)> =
-                tree.items.iter().map(|item| (*item, bounds(*item).middle())).collect();
-            sort(&mut middles);
-            tree.items.iter_mut().zip(middles).for_each(|(item, (sorted, _))| *item = sorted);
-            tree.boxes.clear();
-            tree.add_leaves(&bounds);
+            return Self::of_strewn(tree.items, bounds);
         }
-        let mut start = 0;
-        while tree.boxes.len() > start + 1 {
-            let end = tree.boxes.len();
-            for first in (start..end).step_by(BRANCHES) {
-                let below = &tree.boxes[first..end.min(first + BRANCHES)];
-                let around = below.iter().fold(Bounds::EMPTY, |bounds, node| bounds.with(*node));
-                tree.boxes.push(around);
-            }
-            start = end;
-        }
+        tree.add_nodes();
+        tree
+    }
+
+    /// The tree of items in no order.
+    pub(crate) fn of_strewn(items: Vec<u32>, bounds: impl Fn(u32) -> Bounds) -> Self {
+        let mut middles: Vec<(u32, DVec3)> =
+            items.into_iter().map(|item| (item, bounds(item).middle())).collect();
+        sort(&mut middles);
+        let mut tree = Self { items: middles.iter().map(|(item, _)| *item).collect(), boxes: Vec::new() };
+        tree.add_leaves(&bounds);
+        tree.add_nodes();
         tree
     }
 
@@ -141,6 +147,20 @@ impl BoxTree {
         of_leaves / of_items
     }
 
+    /// Adds the boxes of all nodes above the leaves.
+    fn add_nodes(&mut self) {
+        let mut start = 0;
+        while self.boxes.len() > start + 1 {
+            let end = self.boxes.len();
+            for first in (start..end).step_by(BRANCHES) {
+                let below = &self.boxes[first..end.min(first + BRANCHES)];
+                let around = below.iter().fold(Bounds::EMPTY, |bounds, node| bounds.with(*node));
+                self.boxes.push(around);
+            }
+            start = end;
+        }
+    }
+
     /// The box around all items, if there are any.
     pub(crate) fn bounds(&self) -> Option<&Bounds> {
         self.boxes.last()
@@ -155,6 +175,42 @@ impl BoxTree {
     pub(crate) fn overlaps_within(&self, bounds: impl Fn(u32) -> Bounds, found: &mut impl FnMut(u32, u32)) {
         if let Some(root) = self.root() {
             self.within(root, &bounds, found);
+        }
+    }
+
+    /// The places in [`Self::items`] of each two items whose boxes overlap, in order, the lower first; in parallel.
+    pub(crate) fn overlapping_places(&self, bounds: impl Fn(u32) -> Bounds) -> Vec<[u32; 2]> {
+        let Some(root) = self.root() else { return Vec::new() };
+        // By place: boxes that are compared are near each other in memory.
+        let bounds: Vec<Bounds> = self.items.iter().map(|item| bounds(*item)).collect();
+        let leaves = self.items.len().div_ceil(LEAF_SIZE);
+        let of_task = |task: usize| {
+            let (mut near, mut found) = (Vec::new(), Vec::new());
+            for leaf in task * LEAVES_PER_TASK..leaves.min((task + 1) * LEAVES_PER_TASK) {
+                near.clear();
+                self.places_near(root, leaf, &mut near);
+                near.retain(|b| bounds[*b].overlaps(&self.boxes[leaf]));
+                for a in leaf * LEAF_SIZE..self.items.len().min((leaf + 1) * LEAF_SIZE) {
+                    let overlapping = near.iter().filter(|b| **b > a && bounds[a].overlaps(&bounds[**b]));
+                    found.extend(overlapping.map(|b| [id(a), id(*b)]));
+                }
+            }
+            found
+        };
+        (0..leaves.div_ceil(LEAVES_PER_TASK)).into_par_iter().flat_map_iter(of_task).collect()
+    }
+
+    /// Adds the places of the items below a node, of a leaf and those after it, whose leaves overlap that leaf.
+    fn places_near(&self, node: Node, leaf: usize, near: &mut Vec<usize>) {
+        let end = (node.index + 1) * BRANCHES.pow(node.level);
+        if end <= leaf || !self.boxes[node.place].overlaps(&self.boxes[leaf]) {
+            return;
+        }
+        if node.level == 0 {
+            let first = node.index * LEAF_SIZE;
+            near.extend(first..self.items.len().min(first + LEAF_SIZE));
+        } else {
+            self.below(node).for_each(|below| self.places_near(below, leaf, near));
         }
     }
 
@@ -319,8 +375,12 @@ fn sort(items: &mut [(u32, DVec3)]) {
     let half = items.len().div_ceil(LEAF_SIZE).next_power_of_two() / 2 * LEAF_SIZE;
     items.select_nth_unstable_by(half, |(_, a), (_, b)| a[axis].total_cmp(&b[axis]));
     let (first, second) = items.split_at_mut(half);
-    sort(first);
-    sort(second);
+    if half >= SORTED_BY_ONE {
+        rayon::join(|| sort(first), || sort(second));
+    } else {
+        sort(first);
+        sort(second);
+    }
 }
 
 #[cfg(test)]
@@ -369,6 +429,13 @@ mod tests {
             between.sort_unstable();
             overlapping.retain(|[a, b]| a < b);
             assert_eq!(within, overlapping, "{count} boxes");
+            let places = tree.overlapping_places(bounds);
+            assert!(places.is_sorted() && places.iter().all(|[a, b]| a < b), "{count} boxes");
+            let items = |[a, b]: &[u32; 2]| [a, b].map(|place| tree.items()[*place as usize]);
+            let mut by_place: Vec<[u32; 2]> =
+                places.iter().map(items).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            by_place.sort_unstable();
+            assert_eq!(by_place, overlapping, "{count} boxes");
             overlapping.retain(|[a, b]| *a < half && half <= *b);
             assert_eq!(between, overlapping, "{count} boxes");
         }

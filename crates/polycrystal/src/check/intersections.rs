@@ -30,17 +30,10 @@ pub(crate) fn crossing_elements(
 ) -> Vec<[u32; 2]> {
     let of_boundary = |boundary: u32| boxes[boundary as usize];
     let filled = (0..id(boxes.len())).filter(|boundary| boundaries.count(*boundary as usize) > 0);
-    // Boundaries that lie together come one after the other.
-    let all = BoxTree::new(filled.collect(), of_boundary);
+    // Boundaries that lie together come one after the other, however grains are numbered.
+    let all = BoxTree::of_strewn(filled.collect(), of_boundary);
     let order = all.items();
-    let mut ranks = vec![0; boxes.len()];
-    (0u32..).zip(order).for_each(|(rank, boundary)| ranks[*boundary as usize] = rank);
-    let mut near = Vec::new();
-    all.overlaps_within(of_boundary, &mut |a, b| {
-        let ranks = [a, b].map(|boundary| ranks[boundary as usize]);
-        near.push([ranks[0].min(ranks[1]), ranks[0].max(ranks[1])]);
-    });
-    near.par_sort_unstable();
+    let near = all.overlapping_places(of_boundary);
     let rims = Grouped::new(
         boxes.len(),
         adjacency.incidences.iter().map(|at| {
