@@ -15,9 +15,9 @@ const LARGEST_CHANGE: f64 = 2.0;
 const LEAST_CHANGE: f64 = 0.3;
 
 /// Boundaries that move in steps exact to first order.
-pub(crate) trait Evolution {
+pub(crate) trait Evolution: Sync {
     /// Where their points are.
-    type Points;
+    type Points: Send + Sync;
 
     /// Where a step leads.
     fn step(&self, start: &Self::Points, time: f64) -> Result<Self::Points, NetworkError>;
@@ -89,10 +89,12 @@ impl AdaptiveSteps {
             check_cancelled();
             let left = self.whole_time - self.passed;
             let time = self.next.min(left);
-            let tried = motion.step(start, time).and_then(|whole| {
-                let halves = motion.step(&motion.step(start, 0.5 * time)?, 0.5 * time)?;
-                Ok((whole, halves))
-            });
+            // Growth takes many steps of few grains: inside one of them threads have little to share.
+            let (whole, halves) = rayon::join(
+                || motion.step(start, time),
+                || motion.step(&motion.step(start, 0.5 * time)?, 0.5 * time),
+            );
+            let tried = whole.and_then(|whole| Ok((whole, halves?)));
             let (error, worst) = match &tried {
                 Ok((whole, halves)) => {
                     largest_share(&motion.volumes(whole), &motion.volumes(halves), &largest_error)

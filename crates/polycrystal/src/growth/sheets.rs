@@ -243,7 +243,9 @@ impl Front for Sheets<'_> {
         time: f64,
     ) -> Result<RelaxedCells, NetworkError> {
         let volumes = self.volumes_now();
-        let Self { recipe, growth, tuning, complex, shape, .. } = self;
+        // In the last events, too, what would be folded became flat.
+        let shape = Shape::new(&self.fans, &self.points);
+        let Self { recipe, growth, tuning, complex, .. } = self;
         let settled = Settled { complex, shape, reconnections, steps, time };
         // Time does not pass any more: what is left to do is for points that have not moved yet.
         let smoothing = match recipe.network.face_mesh {
