@@ -5,16 +5,16 @@ use std::path::Path;
 use sysinfo::{MemoryRefreshKind, System};
 
 /// Bytes that a run in space holds at its peak, which is in one of two stages. Fitted to peak resident memory, in millions of bytes and brackets what
-/// comes of it: 200 grains took 91 (79) at level 3 and 209 (216) at level 4, 500 grains 183 (173) at level 3, 1000 grains 288 (284) and 327 (329) at
-/// levels 2 and 3, 2000 grains 116 (114), 320 (338), 566 (552) and 688 (653) at levels 0 to 3, 20 000 grains 1079 (1067) at level 0 and 5832 (6580) at level 3,
-/// 100 000 grains 4996 (5330) at level 0.
+/// comes of it: 200 grains took 37 (43), 91 (79) and 223 (216) at levels 1, 3 and 4, 500 grains 195 (173) at level 3, 1000 grains 146 (141) and 259 (280) at
+/// levels 1 and 2, 2000 grains 94 (93), 268 (268), 526 (552) and 630 (653) at levels 0 to 3, 20 000 grains 826 (781), 2612 (2600) and 6031 (6580) at levels 0, 1 and 3,
+/// 100 000 grains 3650 (3873) at level 0.
 ///
 /// The program itself ...
 const PROGRAM: u128 = 20_000_000;
 
 /// ... in relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
-const RELAXED_PER_CONTROL_EDGE: u128 = 500;
-const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 1250;
+const RELAXED_PER_CONTROL_EDGE: u128 = 420;
+const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 850;
 const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 1700;
 
 /// ... for each triangle of level 1, where that carries energy, or of level 2 ...
