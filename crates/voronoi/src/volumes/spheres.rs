@@ -51,23 +51,13 @@ pub fn place_spheres(
         if classes.last().is_none_or(|class| radius < 0.5 * class.largest_radius) {
             classes.push(SphereGrid::new(domain, radius, order.len() - rank));
         }
-        let mut best = (f64::INFINITY, DVec3::ZERO);
-        for _ in 0..MOST_PLACES {
-            let place = random_point(domain, &mut fraction);
-            let overlap = classes
-                .iter()
-                .map(|class| class.overlap(place, radius, best.0))
-                .fold(f64::NEG_INFINITY, f64::max);
-            if overlap < best.0 {
-                best = (overlap, place);
-            }
-            if overlap <= 0.0 {
-                break;
-            }
-        }
-        seeds[sphere] = best.1;
+        let place = roomiest_place(
+            || random_point(domain, &mut fraction),
+            |place, enough| largest_overlap(&classes, [(place, radius)], enough),
+        );
+        seeds[sphere] = place;
         if let Some(class) = classes.last_mut() {
-            class.insert(best.1, radius);
+            class.insert(place, radius);
         }
     }
     Ok(seeds)
@@ -110,24 +100,55 @@ pub fn place_ellipsoids(
                 .map(|(center, square)| (wrapped(domain, center), square.sqrt()))
                 .filter(|(center, _)| domain.contains(*center))
         };
-        let mut best = (f64::INFINITY, DVec3::ZERO);
-        for _ in 0..MOST_PLACES {
-            let place = random_point(domain, &mut fraction);
-            let overlaps = spheres(place).map(|(center, radius)| grid.overlap(center, radius, best.0));
-            let overlap = overlaps.fold(f64::NEG_INFINITY, f64::max);
-            if overlap < best.0 {
-                best = (overlap, place);
-            }
-            if overlap <= 0.0 {
-                break;
-            }
-        }
-        centers[body] = best.1;
-        for (center, radius) in spheres(best.1) {
+        let place = roomiest_place(
+            || random_point(domain, &mut fraction),
+            |place, enough| largest_overlap(std::slice::from_ref(&grid), spheres(place), enough),
+        );
+        centers[body] = place;
+        for (center, radius) in spheres(place) {
             grid.insert(center, radius);
         }
     }
     Ok(centers)
+}
+
+/// The first of some places that has no overlap, or else the one of least; `overlap` may end early where it is enough.
+fn roomiest_place(mut draw: impl FnMut() -> DVec3, overlap: impl Fn(DVec3, f64) -> f64) -> DVec3 {
+    // How much it is counts only where no place is free: most are not, and most spheres find one.
+    let mut taken = Vec::new();
+    for _ in 0..MOST_PLACES {
+        let place = draw();
+        if overlap(place, f64::MIN_POSITIVE) <= 0.0 {
+            return place;
+        }
+        taken.push(place);
+    }
+    let mut best = (f64::INFINITY, DVec3::ZERO);
+    for place in taken {
+        let overlap = overlap(place, best.0);
+        if overlap < best.0 {
+            best = (overlap, place);
+        }
+    }
+    best.1
+}
+
+/// The largest overlap of some spheres with those in grids, as of [`SphereGrid::overlap`].
+fn largest_overlap(
+    grids: &[SphereGrid<'_>],
+    spheres: impl IntoIterator<Item = (DVec3, f64)>,
+    enough: f64,
+) -> f64 {
+    let mut most = f64::NEG_INFINITY;
+    for (center, radius) in spheres {
+        for grid in grids {
+            most = most.max(grid.overlap(center, radius, enough));
+            if most >= enough {
+                return most;
+            }
+        }
+    }
+    most
 }
 
 /// A place moved by whole periods into the domain.
@@ -222,13 +243,13 @@ impl<'a> SphereGrid<'a> {
         most
     }
 
-    /// A coordinate of a block and those beside it, each once.
+    /// A coordinate of a block and those beside it, each once; its own first, where an overlap is likeliest.
     fn near(&self, axis: usize, coordinate: u32) -> [Option<u32>; 3] {
         let count = self.counts[axis];
         let wraps = self.domain.periodic().test(axis) && count > 2;
         let before = coordinate.checked_sub(1).or(wraps.then_some(count - 1));
         let after = if coordinate + 1 < count { Some(coordinate + 1) } else { wraps.then_some(0) };
-        [before, Some(coordinate), after]
+        [Some(coordinate), before, after]
     }
 }
 
