@@ -220,7 +220,8 @@ impl Front for Sheets<'_> {
         if reconnections != Reconnections::default() {
             self.follow_complex();
         } else {
-            self.points = self.shape.points(&self.complex, &self.fans);
+            // What is folded becomes flat.
+            self.take(self.shape.points(&self.complex, &self.fans));
         }
         if reconnections != Reconnections::default() || !vanished.is_empty() {
             self.restore(&volumes, size)?;
@@ -243,9 +244,7 @@ impl Front for Sheets<'_> {
         time: f64,
     ) -> Result<RelaxedCells, NetworkError> {
         let volumes = self.volumes_now();
-        // In the last events, too, what would be folded became flat.
-        let shape = Shape::new(&self.fans, &self.points);
-        let Self { recipe, growth, tuning, complex, .. } = self;
+        let Self { recipe, growth, tuning, complex, shape, .. } = self;
         let settled = Settled { complex, shape, reconnections, steps, time };
         // Time does not pass any more: what is left to do is for points that have not moved yet.
         let smoothing = match recipe.network.face_mesh {
