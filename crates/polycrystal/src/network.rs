@@ -19,11 +19,11 @@ use std::borrow::Cow;
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::EdgeId;
+use subzero::{EdgeId, TriangleMesh};
 use voronoi::Domain;
 
 use crate::mesh::id::id;
-use crate::mesh::volume::{boundary_cones, volumes_of_grains};
+use crate::mesh::volume::{boundary_cones, refined_cones, volumes_of_grains};
 use crate::{
     Boundary, Freedom, Level, LevelView, Mesh, NetworkError, PeriodicCopies, Side, Surface, WallSet, WallSets,
 };
@@ -253,7 +253,10 @@ impl Network {
         for level in from + 1..=to {
             check_cancelled();
             let finer = self.level(level);
-            points = self.levels[level - 1].mesh.step(&points);
+            points = match self.beyond(level) {
+                Some(mesh) => mesh.loop_step_beyond(&points),
+                None => self.levels[level - 1].mesh.step(&points),
+            };
             points.par_iter_mut().enumerate().for_each(|(vertex, point)| {
                 let walls = finer.walls(vertex, &self.wall_sets);
                 if !walls.is_empty() {
@@ -263,6 +266,14 @@ impl Network {
             finer.copies().place(&self.domain, &mut points);
         }
         points
+    }
+
+    /// In space, the mesh two levels before a level: it alone says how points of that level follow from those of the one between.
+    fn beyond(&self, level: usize) -> Option<&TriangleMesh> {
+        match self.levels.get(level.checked_sub(2)?)?.mesh {
+            Mesh::Triangles(ref mesh) => Some(mesh),
+            Mesh::Segments(_) => None,
+        }
     }
 
     /// The points of the finest level for flat boundaries: each new one midway between the ends of its edge.
@@ -298,6 +309,21 @@ impl Network {
     /// Volume (in the plane: area) of each grain, for points of the given level.
     pub fn grain_volumes<'a>(&self, level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<f64> {
         let cones = boundary_cones(&Surface::of_level(level.into(), points, &self.sides()));
+        volumes_of_grains(&self.boundaries, &cones, self.grain_count())
+    }
+
+    /// Volume (in the plane: area) of each grain on level `to`, for the points of level `from`, up to rounding.
+    ///
+    /// In space, points of the third level and finer ones are not kept: they would take four times as much memory as those of the level before.
+    ///
+    /// # Panics
+    /// As of [`Self::subdivide_between`].
+    pub(crate) fn grain_volumes_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<f64> {
+        let (Some(mesh), true) = (self.beyond(to), from < to) else {
+            return self.grain_volumes(self.level(to), &self.subdivide_between(from, to, points));
+        };
+        let coarser = self.subdivide_between(from, to - 1, points);
+        let cones = refined_cones(mesh, &self.levels[to - 2], self.boundaries.len(), &coarser);
         volumes_of_grains(&self.boundaries, &cones, self.grain_count())
     }
 

@@ -40,6 +40,7 @@ mod half_edge_mesh;
 mod ids;
 mod large_vec;
 mod limit_masks;
+mod loop_beyond;
 mod loop_hierarchy;
 mod loop_limit;
 mod loop_points;

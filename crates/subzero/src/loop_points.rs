@@ -128,11 +128,10 @@ impl TriangleMesh {
             *new = if self.is_sharp(v) {
                 self.point_by_stencil(id(v), points, weights)
             } else {
-                let ring = rings
-                    .outgoing_edges(v)
-                    .iter()
-                    .map(|&outgoing_edge| points[neighbour(outgoing_edge) as usize]);
-                smooth_point(points[v], ring, rings.weight(v))
+                let outgoing_edges = rings.outgoing_edges(v);
+                let ring =
+                    outgoing_edges.iter().map(|&outgoing_edge| points[neighbour(outgoing_edge) as usize]);
+                smooth_point(points[v], ring, outgoing_edges.len(), rings.weight(v))
             };
         });
     }
@@ -385,16 +384,21 @@ impl<P: Point> Inside<'_, P> {
 }
 
 /// The new place of a smooth vertex, of which each neighbour has this weight.
-fn smooth_point<P: Point>(vertex: P, ring: impl ExactSizeIterator<Item = P>, neighbour: f64) -> P {
+pub(crate) fn smooth_point<P: Point>(
+    vertex: P,
+    ring: impl Iterator<Item = P>,
+    valence: usize,
+    neighbour: f64,
+) -> P {
     #[allow(clippy::cast_precision_loss)]
-    let own = 1.0 - ring.len() as f64 * neighbour;
+    let own = 1.0 - valence as f64 * neighbour;
     let sum = ring.fold(P::zero(), |sum, p| sum.add_scaled(p, 1.0));
     vertex.scaled(own).add_scaled(sum, neighbour)
 }
 
 /// The new place of a smooth vertex with six neighbours, the same for Loop's and Warren's weights.
 #[inline(always)]
-fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
+pub(crate) fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
     let [a, b, c, d, e, f] = ring;
     let pairs = [a.add_scaled(b, 1.0), c.add_scaled(d, 1.0), e.add_scaled(f, 1.0)];
     let ring = pairs[0].add_scaled(pairs[1], 1.0).add_scaled(pairs[2], 1.0);
@@ -403,7 +407,7 @@ fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
 
 /// The point on a smooth edge from its ends and the apexes of its triangles.
 #[inline(always)]
-fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
+pub(crate) fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
     let ends = a.add_scaled(b, 1.0);
     let apexes = c.add_scaled(d, 1.0);
     ends.scaled(0.375).add_scaled(apexes, 0.125)

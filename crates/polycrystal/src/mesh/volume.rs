@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use subzero::{FaceId, TriangleMesh};
 use voronoi::Dimension;
 
 use crate::mesh::boundary_elements::BoundaryElements;
-use crate::{Boundary, GrainId, Surface};
+use crate::{Boundary, GrainId, Level, Surface};
 
 /// Error of a volume, as a share of it, up to which it is restored.
 pub(crate) const VOLUME_RESTORED: f64 = 1e-12;
@@ -57,30 +58,70 @@ pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
     cones.map(|boundary| cone_of_boundary(surface, boundaries.of(boundary))).collect()
 }
 
-/// The cone from the first point of some elements to them.
-pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: impl Iterator<Item = u32> + Clone) -> Cone {
-    let dimension = surface.elements.dimension();
-    let at = |vertex: u32| surface.points[vertex as usize];
-    let Some(apex) = elements.clone().next().map(|first| at(surface.elements.corners(first)[0])) else {
-        return Cone::new(DVec3::ZERO, 0.0, DVec3::ZERO, dimension);
+/// Per boundary of a level in space, which has this mesh, the cone from a point of it to its surface two levels on, for the points one level on.
+pub(crate) fn refined_cones(
+    mesh: &TriangleMesh,
+    level: &Level,
+    boundary_count: usize,
+    points: &[DVec3],
+) -> Vec<Cone> {
+    let moved = mesh.loop_moved_beyond(points);
+    let boundaries = BoundaryElements::of_level(level, boundary_count);
+    let of_boundary = |boundary: usize| {
+        let mut sum = ElementSum::default();
+        for triangle in boundaries.of(boundary) {
+            let own = mesh.loop_points_beyond(FaceId(triangle), points, &moved);
+            for corners in TriangleMesh::TRIANGLES_BEYOND {
+                sum.add_triangle(corners.map(|corner| own[corner]));
+            }
+        }
+        sum.cone(Dimension::Three)
     };
-    let mut sums = (0.0, DVec3::ZERO);
+    (0..boundary_count).into_par_iter().map(of_boundary).collect()
+}
+
+/// The cone from the first point of some elements to them.
+pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: impl Iterator<Item = u32>) -> Cone {
+    let at = |vertex: u32| surface.points[vertex as usize];
+    let mut sum = ElementSum::default();
     for element in elements {
-        let (volume, area) = match *surface.elements.corners(element) {
-            [a, b, c] => {
-                let [a, b, c] = [a, b, c].map(|corner| at(corner) - apex);
-                (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
-            }
-            [a, b] => {
-                let [a, b] = [a, b].map(|end| at(end) - apex);
-                (segment_area([a, b]), (b - a).cross(DVec3::Z))
-            }
+        match *surface.elements.corners(element) {
+            [a, b, c] => sum.add_triangle([a, b, c].map(at)),
+            [a, b] => sum.add_segment([a, b].map(at)),
             _ => unreachable!("elements have two or three points"),
-        };
-        sums.0 += volume;
-        sums.1 += area;
+        }
     }
-    Cone::new(apex, sums.0, sums.1, dimension)
+    sum.cone(surface.elements.dimension())
+}
+
+/// What elements of a boundary add up to, from the first point of the first.
+#[derive(Debug, Clone, Copy, Default)]
+struct ElementSum {
+    apex: Option<DVec3>,
+    volume: f64,
+    area: DVec3,
+}
+
+impl ElementSum {
+    #[inline]
+    fn add_triangle(&mut self, corners: [DVec3; 3]) {
+        let apex = *self.apex.get_or_insert(corners[0]);
+        let [a, b, c] = corners.map(|corner| corner - apex);
+        let doubled_area = (b - a).cross(c - a);
+        self.volume += a.dot(doubled_area) / 6.0;
+        self.area += doubled_area / 2.0;
+    }
+
+    fn add_segment(&mut self, ends: [DVec3; 2]) {
+        let apex = *self.apex.get_or_insert(ends[0]);
+        let [a, b] = ends.map(|end| end - apex);
+        self.volume += segment_area([a, b]);
+        self.area += (b - a).cross(DVec3::Z);
+    }
+
+    fn cone(self, dimension: Dimension) -> Cone {
+        Cone::new(self.apex.unwrap_or(DVec3::ZERO), self.volume, self.area, dimension)
+    }
 }
 
 /// A volume that cones add up to, all from the apex of the first.
@@ -122,8 +163,30 @@ pub(crate) fn volumes_of_grains(boundaries: &[Boundary], cones: &[Cone], grain_c
 
 #[cfg(test)]
 mod tests {
+    use voronoi::{Domain, Tessellation};
+
     use super::*;
-    use crate::{BoundaryId, Elements, Side};
+    use crate::{BoundaryId, Elements, Junctions, Network, Side};
+
+    #[test]
+    fn volumes_of_a_level_follow_from_the_points_of_the_levels_before() {
+        let seeds: Vec<DVec3> =
+            (1..=12).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+        for domain in [Domain::unit_cube(), Domain::unit_cube().with_periods(glam::BVec3::TRUE)] {
+            let cells = Tessellation::new(&domain, &seeds).expect("valid seeds");
+            let (network, points) = Network::new(&cells, Junctions::Corner, 3).expect("a small network");
+            for to in 0..=3 {
+                for from in 0..=to {
+                    let [given, finest] =
+                        [from, to].map(|level| network.subdivide_between(0, level, &points));
+                    let expected = network.grain_volumes(network.level(to), &finest);
+                    let volumes = network.grain_volumes_between(from, to, &given);
+                    let far = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() > 1e-13;
+                    assert_eq!(volumes.iter().zip(&expected).position(far), None, "{from} to {to}");
+                }
+            }
+        }
+    }
 
     /// From the origin of coordinates, a volume of 1e-21 at a distance of 1 would drown in rounding.
     #[test]

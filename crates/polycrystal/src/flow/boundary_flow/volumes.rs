@@ -65,9 +65,8 @@ impl Flow<'_> {
         let mut step = 0;
         loop {
             check_cancelled();
-            let surface = self.finest_points(points);
-            check_cancelled();
-            let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+            let missing =
+                self.missing(&self.network.grain_volumes_between(self.level, self.finest(), points));
             let (grain, relative_error) = self.largest_error(&missing);
             let mut stalled = false;
             if let Some(last) = &last {
@@ -75,12 +74,15 @@ impl Flow<'_> {
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
                 gain = (gain / (1.0 - left)).clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN);
             }
-            if relative_error <= VOLUME_RESTORED || (stalled && is_rounding(self.network, &missing, &surface))
-            {
-                return Ok(surface);
+            if relative_error <= VOLUME_RESTORED {
+                return Ok(self.finest_points(points));
             }
-            // A correction has a surface of its own: on the finest level there is room for one.
-            drop(surface);
+            if stalled {
+                let surface = self.finest_points(points);
+                if is_rounding(self.network, &missing, &surface) {
+                    return Ok(surface);
+                }
+            }
             let (groups, response) = &*response;
             // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
             let is_hopeless = relative_error.is_nan() || relative_error >= 1.0 || !response.can_change(grain);
