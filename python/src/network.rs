@@ -60,7 +60,7 @@ impl Network {
         match this.mesh().elements() {
             Elements::Triangles(triangles) => view_of_rows(slf.as_any(), triangles),
             Elements::Refined(mesh) => {
-                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.refined_triangles()))
+                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.triangles()))
             }
             Elements::Segments(segments) => view_of_rows(slf.as_any(), segments),
         }

@@ -127,7 +127,7 @@ impl Polycrystal {
         match this.made.network.finest().elements() {
             Elements::Triangles(triangles) => view_of_rows(slf.as_any(), triangles),
             Elements::Refined(mesh) => {
-                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.refined_triangles()))
+                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.triangles()))
             }
             Elements::Segments(segments) => view_of_rows(slf.as_any(), segments),
         }

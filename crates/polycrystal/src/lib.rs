@@ -68,7 +68,7 @@ pub use mesh::angles::{AngleStatistics, WeightedAngle};
 pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use mesh::connectivity::Mesh;
 pub use mesh::elements::{Corners, Elements};
-pub use mesh::level::{Level, LevelView};
+pub use mesh::level::{Level, LevelView, RefinedLevel};
 pub use mesh::node_type::NodeType;
 pub use mesh::periodic::PeriodicCopies;
 pub use mesh::surface::Surface;

@@ -124,7 +124,7 @@ pub fn point_dihedral_angles(network: &Network, points: &[DVec3]) -> Vec<[f64; 2
 fn of_complex(complex: &Complex<'_>) -> Measures {
     match complex.surface.elements {
         Elements::Triangles(triangles) => Measures::Space(space::measure(complex, triangles)),
-        Elements::Refined(mesh) => Measures::Space(space::measure(complex, &mesh.refined_triangles())),
+        Elements::Refined(mesh) => Measures::Space(space::measure(complex, &mesh.triangles())),
         Elements::Segments(segments) => Measures::Plane(plane::measure(complex, segments)),
     }
 }

@@ -23,9 +23,11 @@ use subzero::{EdgeId, TriangleMesh};
 use voronoi::Domain;
 
 use crate::mesh::id::id;
+use crate::mesh::level::LevelMesh;
 use crate::mesh::volume::{boundary_cones, refined_cones, volumes_of_grains};
 use crate::{
-    Boundary, Freedom, Level, LevelView, Mesh, NetworkError, PeriodicCopies, Side, Surface, WallSet, WallSets,
+    Boundary, Freedom, Level, LevelView, Mesh, NetworkError, PeriodicCopies, RefinedLevel, Side, Surface,
+    WallSet, WallSets,
 };
 use control_mesh::JunctionCounts;
 use tension::{checked_mobility, checked_tension, mean_in_flow};
@@ -45,8 +47,8 @@ pub struct Network {
     wall_sets: WallSets,
     /// From the control mesh to the finest that is held in memory.
     levels: Vec<Level>,
-    /// Where the finest level is one more: the copies there.
-    finest_copies: Option<PeriodicCopies>,
+    /// The copies on each finer level.
+    finer_copies: Vec<PeriodicCopies>,
 }
 
 impl Network {
@@ -186,10 +188,10 @@ impl Network {
 
     /// How often the control mesh is subdivided.
     pub fn level_count(&self) -> usize {
-        self.levels.len() - usize::from(self.finest_copies.is_none())
+        self.levels.len() - 1 + self.finer_copies.len()
     }
 
-    /// The connectivity of the levels that are held in memory: all of few, and in space all but the finest from the third on.
+    /// The connectivity of the levels that are held in memory: all of few, and in space all but the finest two from the third on.
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
@@ -204,15 +206,13 @@ impl Network {
     /// # Panics
     /// When there is no such level.
     pub fn level(&self, level: usize) -> LevelView<'_> {
-        match (self.levels.get(level), &self.finest_copies) {
-            (Some(held), _) => held.into(),
-            (None, Some(copies)) if level == self.levels.len() => LevelView::Refined {
-                parent: &self.levels[level - 1],
-                copies,
-                generation: u8::try_from(level).expect("there are fewer than 128 levels"),
-            },
-            _ => panic!("there is no level {level}"),
+        if let Some(held) = self.levels.get(level) {
+            return held.into();
         }
+        let beyond = level - self.levels.len();
+        let copies = self.finer_copies.get(beyond).unwrap_or_else(|| panic!("there is no level {level}"));
+        let held = &self.levels[self.levels.len() - 1];
+        LevelView::Refined(RefinedLevel::new(held, beyond + 1, &self.boundaries, copies, level))
     }
 
     /// The connectivity of the finest level.
@@ -222,13 +222,35 @@ impl Network {
 
     /// The finest level as a whole, made for it where it is not held in memory.
     pub fn finest_level(&self) -> Cow<'_, Level> {
-        match self.finest() {
-            LevelView::Held(level) => Cow::Borrowed(level),
-            LevelView::Refined { parent, .. } => {
-                let finest = parent.refine(&self.boundaries, &self.wall_sets);
-                Cow::Owned(finest.expect("ids were counted when the network was made"))
-            }
+        self.whole_level(self.level_count())
+    }
+
+    /// One level as a whole, made for it where it is not held in memory.
+    ///
+    /// # Panics
+    /// When there is no such level.
+    pub fn whole_level(&self, level: usize) -> Cow<'_, Level> {
+        assert!(level <= self.level_count(), "there is no level {level}");
+        let held = level.min(self.levels.len() - 1);
+        (held..level).fold(Cow::Borrowed(&self.levels[held]), |coarser, _| {
+            let finer = coarser.refine(&self.boundaries, &self.wall_sets);
+            Cow::Owned(finer.expect("ids were counted when the network was made"))
+        })
+    }
+
+    /// The network with all levels up to this one held in memory, so that the points of this one can move by themselves.
+    ///
+    /// # Panics
+    /// When there is no such level.
+    pub(crate) fn holding(&self, level: usize) -> Cow<'_, Self> {
+        let mut network = Cow::Borrowed(self);
+        for finer in self.levels.len()..=level {
+            let made = self.whole_level(finer).into_owned();
+            let network = network.to_mut();
+            network.levels.push(made);
+            network.finer_copies.remove(0);
         }
+        network
     }
 
     /// The points of the finest level for the given control points, all boundaries in parallel.
@@ -246,26 +268,43 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex of level `from`, or no level `to`.
     pub fn subdivide_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
-        let coarsest = self.level(from);
-        assert_eq!(points.len(), coarsest.vertex_count(), "there must be one point per vertex");
-        let mut points = points.to_vec();
-        coarsest.copies().place(&self.domain, &mut points);
-        for level in from + 1..=to {
-            check_cancelled();
-            let finer = self.level(level);
-            points = match self.beyond(level) {
-                Some(mesh) => mesh.loop_step_beyond(&points),
-                None => self.levels[level - 1].mesh.step(&points),
-            };
-            points.par_iter_mut().enumerate().for_each(|(vertex, point)| {
-                let walls = finer.walls(vertex, &self.wall_sets);
+        let mut refined = self.refined_points(from, to, points);
+        let level = self.level(to);
+        if from < to {
+            refined.par_iter_mut().enumerate().for_each(|(vertex, point)| {
+                let walls = level.walls(vertex, &self.wall_sets);
                 if !walls.is_empty() {
                     *point = self.wall_sets.put_on_walls(walls, *point);
                 }
             });
-            finer.copies().place(&self.domain, &mut points);
         }
-        points
+        level.copies().place(&self.domain, &mut refined);
+        refined
+    }
+
+    /// As [`Self::subdivide_between`], where rounding may take points on walls and copies from their places.
+    fn refined_points(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
+        assert_eq!(points.len(), self.level(from).vertex_count(), "there must be one point per vertex");
+        let mut points = points.to_vec();
+        self.level(from).copies().place(&self.domain, &mut points);
+        (from + 1..=to).fold(points, |points, level| {
+            check_cancelled();
+            match self.beyond(level) {
+                Some(mesh) => mesh.loop_step_beyond(&points),
+                None => self.levels[level - 1].mesh.step(&points),
+            }
+        })
+    }
+
+    /// Puts the points of the level before that make up a point of a level in place of `entries`, each with its weight.
+    ///
+    /// # Panics
+    /// When there is no such level, or it is the control mesh.
+    pub(crate) fn stencil(&self, level: usize, point: u32, entries: &mut Vec<(u32, f64)>) {
+        match self.beyond(level) {
+            Some(mesh) => mesh.loop_stencil_beyond(point, entries),
+            None => self.levels[level - 1].mesh.stencil(point, entries),
+        }
     }
 
     /// In space, the mesh two levels before a level: it alone says how points of that level follow from those of the one between.
@@ -293,12 +332,12 @@ impl Network {
         self.control_mesh().copies.place(&self.domain, &mut points);
         for level in 1..=self.level_count() {
             let middle = |[a, b]: [u32; 2]| points[a as usize].midpoint(points[b as usize]);
-            let middles: Vec<DVec3> = match &self.levels[level - 1].mesh {
-                Mesh::Triangles(mesh) => {
+            let middles: Vec<DVec3> = match self.level(level - 1).mesh() {
+                LevelMesh::Triangles(mesh) => {
                     let edges = (0..mesh.counts().edges).into_par_iter();
                     edges.map(|edge| middle(mesh.edge(EdgeId(edge)))).collect()
                 }
-                Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| middle(*ends)).collect(),
+                LevelMesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| middle(*ends)).collect(),
             };
             points.extend(middles);
             self.level(level).copies().place(&self.domain, &mut points);
@@ -322,7 +361,7 @@ impl Network {
         let (Some(mesh), true) = (self.beyond(to), from < to) else {
             return self.grain_volumes(self.level(to), &self.subdivide_between(from, to, points));
         };
-        let coarser = self.subdivide_between(from, to - 1, points);
+        let coarser = self.refined_points(from, to - 1, points);
         let cones = refined_cones(mesh, &self.levels[to - 2], self.boundaries.len(), &coarser);
         volumes_of_grains(&self.boundaries, &cones, self.grain_count())
     }

@@ -143,27 +143,27 @@ fn relax_levels<T>(
     accept: &dyn Fn(&Relaxed) -> Result<T, NetworkError>,
 ) -> Result<(Relaxed, T), NetworkError> {
     let Plan { relaxation, start, volumes, tuning, tension_unit } = *plan;
-    let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
-    let flow = |level: usize| Flow::new(network, level, volumes, tension_unit, *tuning);
-    let accepted = |relaxed: Relaxed| accept(&relaxed).map(|made| (relaxed, made));
     relaxation.check()?;
     let (time, finest) = match relaxation {
         Relaxation::Time(time) => (time, tuning.finest_moved),
         Relaxation::Equilibrium => (TIME_OF_KEPT_TOPOLOGY, tuning.finest_balanced),
     };
+    let last = network.level_count().min(finest);
+    let network = &*network.holding(last);
+    let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
+    let flow = |level: usize| Flow::new(network, level, volumes, tension_unit, *tuning);
+    let accepted = |relaxed: Relaxed| accept(&relaxed).map(|made| (relaxed, made));
     let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     if time == 0.0 || !has_tension {
         let mut points = control_points.to_vec();
         // Cells that were regularised have lost the volumes that their grains are to have.
-        let is_lost =
-            || !has_kept_volumes(network, &network.subdivide_between(0, network.level_count(), &points));
+        let is_lost = || !has_kept_volumes(network, 0, &points);
         if volumes == Volumes::Kept && is_lost() {
             flow(0).restore_volumes(&mut points)?;
         }
         let is_flat = points == control_points;
         return accepted(Relaxed { is_flat, ..Relaxed::new(0, points) });
     }
-    let last = network.level_count().min(finest);
     if volumes == Volumes::Free {
         let begin = network.subdivide_between(0, last, control_points);
         let mut done = 0;
@@ -297,7 +297,7 @@ mod tests {
         let [Attempt { tried, said }] = &coarse.given_up[..] else { panic!("{:?}", coarse.given_up) };
         assert_eq!((tried.as_str(), said), ("moving the points of level 1", &crossing().to_string()));
         // It is complete: volumes are right on the finest level.
-        assert!(has_kept_volumes(&network, &coarse.finest_points(&network)));
+        assert!(has_kept_volumes(&network, coarse.level, &coarse.points));
         let (fine, _) = relaxed(1).expect("all points will do");
         assert_eq!((fine.level, fine.given_up.len()), (1, 0));
         assert!(coarse.time < fine.time && coarse.steps < fine.steps);

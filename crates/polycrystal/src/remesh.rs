@@ -217,9 +217,11 @@ impl Network {
 
     /// The coarsest level with edges that are short enough for elements of a size, at the points of the finest one; the finest if there is none.
     fn reference_level(&self, points: &[DVec3], size: f64, tuning: &RemeshTuning) -> Cow<'_, Level> {
-        let is_fine =
-            |level: &&Level| level.mesh.mean_edge_length(points) <= tuning.longest_of_reference * size;
-        self.levels().iter().find(is_fine).map_or_else(|| self.finest_level(), Cow::Borrowed)
+        let is_fine = |level: &Cow<'_, Level>| {
+            level.mesh.mean_edge_length(points) <= tuning.longest_of_reference * size
+        };
+        let mut coarser = (0..self.level_count()).map(|level| self.whole_level(level));
+        coarser.find(is_fine).unwrap_or_else(|| self.finest_level())
     }
 }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::{id, next, prev};
 use crate::loop_points::{edge_point, smooth_point, vertex_point};
-use crate::{EdgeId, FaceId, LoopWeights, Point, TriangleMesh, VertexRule, large_vec};
+use crate::{EdgeId, FaceId, LoopWeights, MeshCounts, Point, TriangleMesh, VertexRule, large_vec};
 
 /// Parents that one task takes.
 const PER_TASK: usize = 1024;
@@ -77,15 +77,74 @@ impl TriangleMesh {
     ///
     /// # Panics
     /// If there is no such triangle, or too few points.
-    #[inline]
+    #[inline(always)]
     pub fn loop_points_beyond<P: Point>(&self, triangle: FaceId, points: &[P], moved: &[P]) -> [P; 15] {
         let t = triangle.index();
         let [a, b, c] = self.triangles[t].map(|corner| moved[corner as usize]);
-        let [ab, bc, ca] = [0, 1, 2].map(|k| moved[self.middle(3 * triangle.0 + k)]);
+        let [ab, bc, ca] = [0, 1, 2].map(|k| moved[self.middle(3 * triangle.0 + k) as usize]);
         let [[a_out, b_back], [b_out, c_back], [c_out, a_back]] =
             [0, 1, 2].map(|k| self.on_halves(3 * triangle.0 + k, points));
         let [at_a, at_b, at_c] = self.inside(t, points);
         [a, b, c, ab, bc, ca, a_out, b_back, b_out, c_back, c_out, a_back, at_a, at_b, at_c]
+    }
+
+    /// One of the points of [`loop_step_beyond`](Self::loop_step_beyond) by itself: puts the points one level on that make it up in place of
+    /// `entries`, each with its weight.
+    ///
+    /// # Panics
+    /// If there is no such point, or what is sharp there is semi-sharp.
+    pub fn loop_stencil_beyond(&self, vertex: u32, entries: &mut Vec<(u32, f64)>) {
+        let MeshCounts { vertices, edges, .. } = self.counts();
+        entries.clear();
+        let mut add =
+            |points: &[u32], weight: f64| entries.extend(points.iter().map(|point| (*point, weight)));
+        if vertex < vertices {
+            match self.vertex_rules[vertex as usize] {
+                VertexRule::Corner => add(&[vertex], 1.0),
+                VertexRule::Crease => {
+                    add(&[vertex], 0.75);
+                    add(&self.along_crease(vertex), 0.125);
+                }
+                VertexRule::Smooth | VertexRule::Dart => {
+                    let ring = self.ring(self.outgoing[vertex as usize]);
+                    let ring: Vec<u32> = ring.map(|h| self.middle(h)).collect();
+                    let weight = LoopWeights::Loop.neighbour(ring.len());
+                    #[allow(clippy::cast_precision_loss)]
+                    add(&[vertex], 1.0 - ring.len() as f64 * weight);
+                    add(&ring, weight);
+                }
+            }
+            return;
+        }
+        let edge = vertex - vertices;
+        if edge < edges {
+            if self.sharp_edges[edge as usize] {
+                add(&[vertex], 0.75);
+                add(&self.edge(EdgeId(edge)), 0.125);
+            } else {
+                add(&[vertex], 0.625);
+                add(&self.around_middle(edge), 0.0625);
+            }
+            return;
+        }
+        let half = edge - edges;
+        match half.checked_sub(2 * edges) {
+            None => {
+                let (edge, end) = (half / 2, (half % 2) as usize);
+                let ends = [self.edge(EdgeId(edge))[end], vertices + edge];
+                if self.sharp_edges[edge as usize] {
+                    add(&ends, 0.5);
+                } else {
+                    let [along, _] = self.edges[edge as usize];
+                    add(&ends, 0.375);
+                    add(&self.beside_halves(along)[end], 0.125);
+                }
+            }
+            Some(h) => {
+                add(&[h, prev(h)].map(|h| self.middle(h)), 0.375);
+                add(&[self.start(h), self.middle(next(h))], 0.125);
+            }
+        }
     }
 
     fn move_beyond<P: Point>(&self, points: &[P], moved: &mut [P]) {
@@ -95,16 +154,14 @@ impl TriangleMesh {
         let (oldest, middles) = moved.split_at_mut(vertices);
         let oldest = oldest.par_iter_mut().with_min_len(PER_TASK).enumerate();
         oldest.for_each(|(v, new)| *new = self.moved_vertex(v, points));
-        let middles = middles.par_iter_mut().zip(&self.edges).with_min_len(PER_TASK).enumerate();
-        middles.for_each(|(e, (new, &[along, against]))| {
-            let at = |h: u32| points[self.start(h) as usize];
-            let middle = |h: u32| points[self.middle(h)];
+        let middles = middles.par_iter_mut().with_min_len(PER_TASK).enumerate();
+        middles.for_each(|(e, new)| {
             let own = points[vertices + e];
+            let at = |point: u32| points[point as usize];
             *new = if self.sharp_edges[e] {
-                on_crease(own, [at(along), at(next(along))])
+                on_crease(own, self.edge(EdgeId(id(e))).map(at))
             } else {
-                let [left, right] = [along, against].map(|h| [middle(next(h)), middle(prev(h))]);
-                vertex_point(own, [at(along), at(against), left[0], left[1], right[0], right[1]])
+                vertex_point(own, self.around_middle(id(e)).map(at))
             };
         });
     }
@@ -115,27 +172,47 @@ impl TriangleMesh {
         match self.vertex_rules[vertex] {
             VertexRule::Corner => own,
             VertexRule::Crease => {
-                let sharp = self.sharpness.outgoing_edges(id(vertex));
-                let neighbour = |place: usize| points[self.vertex_count() + sharp[place].edge.index()];
-                on_crease(own, [neighbour(0), neighbour(1)])
+                on_crease(own, self.along_crease(id(vertex)).map(|neighbour| points[neighbour as usize]))
             }
             VertexRule::Smooth | VertexRule::Dart => {
                 let ring = || self.ring(self.outgoing[vertex]);
                 let valence = ring().count();
-                let middles = ring().map(|h| points[self.middle(h)]);
+                let middles = ring().map(|h| points[self.middle(h) as usize]);
                 smooth_point(own, middles, valence, LoopWeights::Loop.neighbour(valence))
             }
         }
     }
 
     /// The vertex on the edge of a half-edge, one level on.
-    #[inline]
-    fn middle(&self, h: u32) -> usize {
-        self.vertex_count() + self.edge_of(h).index()
+    #[inline(always)]
+    fn middle(&self, h: u32) -> u32 {
+        self.counts().edge_vertex(self.edge_of(h))
+    }
+
+    /// The vertices on the two sharp edges of a vertex, one level on.
+    fn along_crease(&self, vertex: u32) -> [u32; 2] {
+        let sharp = self.sharpness.outgoing_edges(vertex);
+        [0, 1].map(|place: usize| self.counts().edge_vertex(sharp[place].edge))
+    }
+
+    /// The vertices around the one on a smooth edge, one level on.
+    #[inline(always)]
+    fn around_middle(&self, edge: u32) -> [u32; 6] {
+        let [along, against] = self.edges[edge as usize];
+        let [a, b] = [along, against].map(|h| self.start(h));
+        let [[c, d], [e, f]] = [along, against].map(|h| [next(h), prev(h)].map(|h| self.middle(h)));
+        [a, b, c, d, e, f]
+    }
+
+    /// The vertices across from the two halves of a smooth half-edge, one level on.
+    #[inline(always)]
+    fn beside_halves(&self, h: u32) -> [[u32; 2]; 2] {
+        let twin = self.twin(h);
+        [[self.middle(prev(h)), self.middle(next(twin))], [self.middle(next(h)), self.middle(prev(twin))]]
     }
 
     /// The points on the two halves of a half-edge, given those one level on.
-    #[inline]
+    #[inline(always)]
     fn on_halves<P: Point>(&self, h: u32, points: &[P]) -> [P; 2] {
         let EdgeId(edge) = self.edge_of(h);
         let middle = points[self.vertex_count() + edge as usize];
@@ -143,16 +220,13 @@ impl TriangleMesh {
         if self.sharp_edges[edge as usize] {
             return [start, end].map(|end| end.add_scaled(middle, 1.0).scaled(0.5));
         }
-        let twin = self.twin(h);
-        let beside = |h: u32| points[self.middle(h)];
-        [
-            edge_point(start, middle, beside(prev(h)), beside(next(twin))),
-            edge_point(end, middle, beside(next(h)), beside(prev(twin))),
-        ]
+        let [[a, b], [c, d]] = self.beside_halves(h);
+        let [a, b, c, d] = [points[a as usize], points[b as usize], points[c as usize], points[d as usize]];
+        [edge_point(start, middle, a, b), edge_point(end, middle, c, d)]
     }
 
     /// The points on the edges that cut off the corners of a triangle, given those one level on.
-    #[inline]
+    #[inline(always)]
     fn inside<P: Point>(&self, t: usize, points: &[P]) -> [P; 3] {
         let corners = self.triangles[t].map(|corner| points[corner as usize]);
         let middles =
@@ -199,6 +273,12 @@ mod tests {
             let (beyond, expected) = (mesh.loop_step_beyond(&given), finer.loop_step(&given));
             let far = |(a, b): (&DVec3, &DVec3)| a.distance(*b) > 1e-14;
             assert_eq!(beyond.iter().zip(&expected).position(far), None);
+            let mut entries = Vec::new();
+            for (vertex, point) in (0u32..).zip(&beyond) {
+                mesh.loop_stencil_beyond(vertex, &mut entries);
+                let made: DVec3 = entries.iter().map(|(p, weight)| given[*p as usize] * *weight).sum();
+                assert!(made.distance(*point) < 1e-14, "vertex {vertex}");
+            }
             // Triangle by triangle they are the same, at the corners of the same triangles.
             let moved = mesh.loop_moved_beyond(&given);
             let finest = finer.refined_triangles();

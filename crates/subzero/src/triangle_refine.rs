@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use crate::ids::{NONE, id, next, prev};
+use crate::ids::{NONE, id, next};
 use crate::large_vec;
-use crate::{EdgeId, FaceId, HalfEdgeId, LoopWeights, MeshError, Refinement, TriangleMesh};
+use crate::{EdgeId, LoopWeights, MeshError, Refinement, TriangleMesh};
 
 /// Parents that one task refines.
 const PARENTS_PER_TASK: usize = 2048;
@@ -46,28 +46,8 @@ impl TriangleMesh {
         })
     }
 
-    /// The corners of a triangle of the refined mesh, numbered as [`MeshCounts`](crate::MeshCounts) says, without that mesh.
-    ///
-    /// # Panics
-    /// If the refined mesh has no such triangle.
-    #[inline]
-    pub fn refined_triangle(&self, FaceId(triangle): FaceId) -> [u32; 3] {
-        let on_edge = |directed: u32| id(self.vertex_count()) + directed / 2;
-        match (triangle as usize).checked_sub(3 * self.triangles.len()) {
-            None => {
-                let (parent, k) = ((triangle / 3) as usize, (triangle % 3) as usize);
-                let directed = self.directed_edges[parent];
-                [self.triangles[parent][k], on_edge(directed[k]), on_edge(directed[(k + 2) % 3])]
-            }
-            Some(parent) => {
-                let [first, second, third] = self.directed_edges[parent].map(on_edge);
-                [third, first, second]
-            }
-        }
-    }
-
     /// All triangles of the refined mesh, without that mesh.
-    pub fn refined_triangles(&self) -> Vec<[u32; 3]> {
+    pub(crate) fn refined_triangles(&self) -> Vec<[u32; 3]> {
         let counts = self.counts();
         let parents = self.triangles.len();
         let mut triangles = large_vec::zeros::<[u32; 3]>(4 * parents);
@@ -81,47 +61,6 @@ impl TriangleMesh {
             *centre = [third, first, second];
         });
         triangles
-    }
-
-    /// The half-edge on the other side in the refined mesh, without that mesh; nothing on boundary and non-manifold edges.
-    ///
-    /// # Panics
-    /// If the refined mesh has no such half-edge.
-    #[inline]
-    pub fn refined_twin(&self, HalfEdgeId(h): HalfEdgeId) -> Option<HalfEdgeId> {
-        let half_edges = id(3 * self.triangles.len());
-        let (child, k) = (h / 3, h % 3);
-        let beyond = |h: u32| Some(self.twin(h)).filter(|twin| *twin != NONE);
-        let twin = match child.checked_sub(half_edges) {
-            // Edge k of a centre cuts off corner k.
-            Some(parent) => 3 * (3 * parent + k) + 1,
-            None => match k {
-                0 => 3 * next(beyond(child)?) + 2,
-                1 => 3 * half_edges + child,
-                _ => 3 * beyond(prev(child))?,
-            },
-        };
-        Some(HalfEdgeId(twin))
-    }
-
-    /// The edge of a half-edge of the refined mesh, without that mesh.
-    ///
-    /// # Panics
-    /// If the refined mesh has no such half-edge.
-    #[inline]
-    pub fn refined_edge(&self, HalfEdgeId(h): HalfEdgeId) -> EdgeId {
-        let half_edges = id(3 * self.triangles.len());
-        let inner = 2 * id(self.edges.len());
-        let (child, k) = (h / 3, h % 3);
-        EdgeId(match child.checked_sub(half_edges) {
-            Some(parent) => inner + 3 * parent + k,
-            None => match k {
-                // The half of an edge where its half-edge starts, and where it ends.
-                0 => self.directed_edge(child),
-                1 => inner + child,
-                _ => self.directed_edge(prev(child)) ^ 1,
-            },
-        })
     }
 
     fn refined_directed_edges(&self) -> Vec<[u32; 3]> {
@@ -177,30 +116,5 @@ impl TriangleMesh {
         let new = self.edges.par_iter().map(|&[along, _]| 3 * along + 1);
         old.chain(new).with_min_len(PARENTS_PER_TASK).collect_into_vec(&mut outgoing);
         outgoing
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::{EdgeId, FaceId, Features, HalfEdgeId, TriangleMesh};
-
-    #[test]
-    fn the_refined_mesh_is_known_without_it() {
-        // A tetrahedron with a fin.
-        let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2], [0, 1, 4]];
-        let mut mesh = TriangleMesh::new(5, triangles, &Features::default()).unwrap();
-        for _ in 0..2 {
-            let finer = mesh.refine_connectivity().unwrap();
-            for (triangle, corners) in (0u32..).zip(finer.triangles()) {
-                assert_eq!(mesh.refined_triangle(FaceId(triangle)), *corners);
-                for (h, edge) in (3 * triangle..).zip(finer.triangle_edges(FaceId(triangle))) {
-                    assert_eq!(mesh.refined_edge(HalfEdgeId(h)), edge);
-                    let twin = finer.half_edge_beyond(HalfEdgeId(h));
-                    assert_eq!(mesh.refined_twin(HalfEdgeId(h)), twin);
-                    assert_eq!(twin.is_some(), finer.edge_triangles(EdgeId(edge.0)).is_some());
-                }
-            }
-            mesh = finer;
-        }
     }
 }

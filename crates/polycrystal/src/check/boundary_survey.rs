@@ -3,14 +3,15 @@
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
+use voronoi::Dimension;
 
 use crate::check::box_tree::Bounds;
 use crate::check::folds::folded_in_boundary;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::triangle_quality::{SmallestAngles, squared_sine};
-use crate::mesh::volume::{Cone, cone_of_boundary};
-use crate::{Elements, Surface, TriangleQuality};
+use crate::mesh::volume::{Cone, ElementSum};
+use crate::{Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
 /// single precision, in which many files keep coordinates, blurs the right angles of a box.
@@ -90,20 +91,27 @@ impl Surveyed {
         neighbors: &[[u32; 2]],
         angles: &mut SmallestAngles,
     ) -> Self {
-        let elements: Vec<u32> = boundaries.of(boundary).collect();
+        let elements = boundaries.of(boundary);
+        let dimension = surface.elements.dimension();
         let mut bounds = Bounds::default();
         let mut normals = Vec::with_capacity(elements.len());
+        let mut sum = ElementSum::default();
         for element in &elements {
             let corners = surface.elements.corners(*element);
-            let at = |k: usize| surface.points[corners[k] as usize];
-            bounds = bounds.with(Bounds::around((0..corners.len()).map(at)));
-            normals.push(surface.elements.normal(surface.points, *element));
-            if corners.len() == 3 {
-                angles.add(squared_sine([at(0), at(1), at(2)]));
-            }
+            let at = |corner: u32| surface.points[corner as usize];
+            bounds = bounds.with(Bounds::around(corners.iter().map(|corner| at(*corner))));
+            normals.push(match *corners {
+                [a, b, c] => {
+                    let corners = [a, b, c].map(at);
+                    angles.add(squared_sine(corners));
+                    sum.add_triangle(corners)
+                }
+                [a, b] => sum.add_segment([a, b].map(at)),
+                _ => unreachable!("elements have two or three points"),
+            });
         }
         // Normals of triangles are as long as twice the area.
-        let share = if let Elements::Segments(_) = surface.elements { 1.0 } else { 0.5 };
+        let share = if dimension == Dimension::Two { 1.0 } else { 0.5 };
         let has_area = |pair: &[u32; 2]| {
             pair.iter().all(|element| surface.elements.normal(surface.points, *element) != DVec3::ZERO)
         };
@@ -112,7 +120,7 @@ impl Surveyed {
         let numbered = elements.iter().zip(&normals);
         Self {
             bounds,
-            cone: cone_of_boundary(surface, elements.iter().copied()),
+            cone: sum.cone(dimension),
             area: normals.iter().map(|normal| share * normal.length()).sum(),
             flat: numbered
                 .filter(|(_, normal)| **normal == DVec3::ZERO)

@@ -45,7 +45,7 @@ pub(crate) fn folded_neighbors(
 ) -> Vec<[u32; 2]> {
     let of_boundary = |boundary: usize| {
         check_cancelled();
-        let own: Vec<u32> = boundaries.of(boundary).collect();
+        let own = boundaries.of(boundary);
         let normals: Vec<DVec3> = own.iter().map(|element| elements.normal(points, *element)).collect();
         folded_in_boundary(&own, &normals, &neighbors.of(boundaries, boundary), cosine)
     };

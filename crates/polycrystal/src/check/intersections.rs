@@ -142,7 +142,7 @@ impl Search<'_> {
     fn searched(&self, rank: u32) -> Searched {
         check_cancelled();
         let boundary = self.order[rank as usize] as usize;
-        let elements: Vec<u32> = self.boundaries.of(boundary).collect();
+        let elements = self.boundaries.of(boundary);
         let normal = |element: &u32| self.surface.elements.normal(self.surface.points, *element);
         let normals: Vec<DVec3> = elements.iter().map(normal).collect();
         let tree = BoxTree::new(elements, |element| bounds(self.surface, element));
@@ -202,7 +202,7 @@ fn pairs_at_lines(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Vec<[u32;
 /// The box around each boundary.
 pub(crate) fn boundary_boxes(surface: &Surface<'_>, boundaries: &BoundaryElements<'_>) -> Vec<Bounds> {
     let around = |boundary: usize| {
-        let boxes = boundaries.of(boundary).map(|element| bounds(surface, element));
+        let boxes = boundaries.of(boundary).into_iter().map(|element| bounds(surface, element));
         boxes.fold(Bounds::default(), Bounds::with)
     };
     (0..boundaries.boundary_count()).into_par_iter().map(around).collect()

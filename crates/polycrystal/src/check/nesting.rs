@@ -103,7 +103,7 @@ impl Piece {
         let apex = surface.points[point as usize];
         let mut volumes: BTreeMap<Side, f64> = BTreeMap::new();
         for elements in elements.chunk_by(|a, b| surface.boundary(*a) == surface.boundary(*b)) {
-            let volume = cone_of_boundary(surface, elements.iter().copied()).volume_from(apex);
+            let volume = cone_of_boundary(surface, elements).volume_from(apex);
             let [first, second] = surface.sides_of(elements[0]);
             *volumes.entry(first).or_default() += volume;
             *volumes.entry(second).or_default() -= volume;

@@ -1,7 +1,7 @@
 //! Points where the surface of a grain touches itself, with no edge in common.
 
 use rayon::prelude::*;
-use subzero::{HalfEdgeId, TriangleMesh};
+use subzero::{HalfEdgeId, RefinedMesh};
 
 use crate::check::fault::Fault;
 use crate::mesh::adjacency::{Adjacency, Incidence, Inner};
@@ -132,10 +132,8 @@ const NONE: u32 = u32::MAX;
 
 /// How triangles of one boundary meet at their edges. The edge from corner `k` of triangle `t` to the next has the number `3 t + k`.
 enum HalfEdges<'a> {
-    /// As a mesh has it whose triangles have these boundaries.
-    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId] },
-    /// One subdivision on from there.
-    Refined { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId] },
+    /// As it follows from a mesh whose triangles have these boundaries.
+    OfMesh { mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId] },
     /// For each edge, the same edge as the triangle beyond runs along it, and its number among all edges if it is not inside a boundary.
     Listed { beyond: Vec<u32>, numbers: Vec<u32> },
 }
@@ -143,12 +141,7 @@ enum HalfEdges<'a> {
 impl<'a> HalfEdges<'a> {
     fn new(elements: Elements<'a>, adjacency: &Adjacency<'a>) -> Self {
         let pairs = match &adjacency.inner {
-            Inner::OfMesh { mesh, boundary_of, is_refined: true } => {
-                return Self::Refined { mesh, boundary_of };
-            }
-            Inner::OfMesh { mesh, boundary_of, is_refined: false } => {
-                return Self::OfMesh { mesh, boundary_of };
-            }
+            Inner::OfMesh { mesh, boundary_of } => return Self::OfMesh { mesh: *mesh, boundary_of },
             Inner::Listed(pairs) => pairs,
         };
         let mut beyond = vec![NONE; 3 * elements.len()];
@@ -176,14 +169,7 @@ impl<'a> HalfEdges<'a> {
             Self::Listed { beyond, .. } => Some(beyond[edge as usize]).filter(|beyond| *beyond != NONE),
             Self::OfMesh { mesh, boundary_of } => {
                 let beyond = mesh.half_edge_beyond(HalfEdgeId(edge))?;
-                let boundary = |triangle: u32| boundary_of[triangle as usize];
-                (boundary(beyond.0 / 3) == boundary(edge / 3)).then_some(beyond.0)
-            }
-            Self::Refined { mesh, boundary_of } => {
-                let beyond = mesh.refined_twin(HalfEdgeId(edge))?;
-                let boundary = |edge: u32| {
-                    boundary_of[mesh.counts().triangle_parent(HalfEdgeId(edge).triangle()).index()]
-                };
+                let boundary = |edge: u32| boundary_of[mesh.ancestor(HalfEdgeId(edge).triangle()).index()];
                 (boundary(beyond.0) == boundary(edge)).then_some(beyond.0)
             }
         }
@@ -193,10 +179,7 @@ impl<'a> HalfEdges<'a> {
     fn number(&self, edge: u32) -> u32 {
         match self {
             Self::Listed { numbers, .. } => numbers[edge as usize],
-            Self::OfMesh { mesh, .. } => {
-                mesh.triangle_edges(HalfEdgeId(edge).triangle())[(edge % 3) as usize].0
-            }
-            Self::Refined { mesh, .. } => mesh.refined_edge(HalfEdgeId(edge)).0,
+            Self::OfMesh { mesh, .. } => mesh.edge_of(HalfEdgeId(edge)).0,
         }
     }
 }

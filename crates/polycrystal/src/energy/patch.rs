@@ -11,7 +11,6 @@ use std::ops::{AddAssign, Mul};
 use glam::DVec3;
 use voronoi::Dimension;
 
-use crate::Mesh;
 use crate::energy::triangle::Triangle;
 use crate::mesh::id::id;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
@@ -69,12 +68,13 @@ pub(crate) struct LocalStencils {
 }
 
 impl LocalStencils {
-    /// Those of some points one level on from a mesh; `coarser` are all points that these depend on, sorted.
-    pub(crate) fn new(mesh: &Mesh, coarser: &[u32], finer: &[u32]) -> Self {
+    /// Those of some points; `stencil` puts the coarser points that one depends on in place of what it is given, each with its weight, and `coarser` are
+    /// all of them, sorted.
+    pub(crate) fn new(stencil: impl Fn(u32, &mut Vec<(u32, f64)>), coarser: &[u32], finer: &[u32]) -> Self {
         let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new(), values: Vec::new() };
         let mut entries = Vec::new();
         for point in finer {
-            mesh.stencil(*point, &mut entries);
+            stencil(*point, &mut entries);
             for (point, weight) in &entries {
                 let known = local.values.iter().position(|value| value == weight);
                 let number = known.unwrap_or_else(|| {

@@ -64,13 +64,13 @@ impl Patches {
             .into_par_iter()
             .map(|boundary| {
                 let surface = (surface > control)
-                    .then(|| local_elements(surface_level.elements(), surface_elements.of(boundary)));
+                    .then(|| local_elements(surface_level.elements(), &surface_elements.of(boundary)));
                 let law = Law {
                     tension: in_unit(network.tensions()[boundary], tension_unit),
                     mobility: in_unit(network.mobilities()[boundary], mobility_unit),
                     share: if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 },
                 };
-                let numbers: Vec<u32> = control_elements.of(boundary).collect();
+                let numbers = control_elements.of(boundary);
                 new_patch(&control_level.mesh, &numbers, surface, law)
             })
             .collect();
@@ -142,30 +142,31 @@ impl Patches {
 }
 
 /// Some elements in terms of their own points, and these points, sorted.
-pub(crate) fn local_elements(
-    all: crate::Elements<'_>,
-    elements: impl Iterator<Item = u32> + Clone,
-) -> (Vec<u32>, Elements) {
-    let mut points = Vec::with_capacity(3 * elements.size_hint().0);
-    for element in elements.clone() {
-        points.extend_from_slice(&all.corners(element));
+pub(crate) fn local_elements(all: crate::Elements<'_>, elements: &[u32]) -> (Vec<u32>, Elements) {
+    let mut points = Vec::with_capacity(3 * elements.len());
+    for element in elements {
+        points.extend_from_slice(&all.corners(*element));
     }
     points.sort_unstable();
     points.dedup();
     let local = |point: u32| index_in(&points, point);
     let elements = match all.dimension() {
-        Dimension::Three => Elements::Triangles(elements.map(|e| all.points(e).map(local)).collect()),
-        Dimension::Two => Elements::Segments(elements.map(|e| all.points(e).map(local)).collect()),
+        Dimension::Three => Elements::Triangles(elements.iter().map(|e| all.points(*e).map(local)).collect()),
+        Dimension::Two => Elements::Segments(elements.iter().map(|e| all.points(*e).map(local)).collect()),
     };
     (points, elements)
 }
 
 fn new_patch(control: &Mesh, numbers: &[u32], surface: Option<(Vec<u32>, Elements)>, law: Law) -> Patch {
     check_cancelled();
-    let (control_points, elements) = local_elements(control.into(), numbers.iter().copied());
+    let (control_points, elements) = local_elements(control.into(), numbers);
     let (edges, edges_across) = local_edges(control, numbers, &control_points);
     let refinement = surface.map(|(points, elements)| Refinement {
-        stencils: LocalStencils::new(control, &control_points, &points),
+        stencils: LocalStencils::new(
+            |point, entries| control.stencil(point, entries),
+            &control_points,
+            &points,
+        ),
         elements,
     });
     Patch { control_points, elements, edges, edges_across, refinement, law }

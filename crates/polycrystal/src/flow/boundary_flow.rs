@@ -13,7 +13,6 @@ use std::cell::LazyCell;
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::FaceId;
 
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
@@ -26,7 +25,7 @@ use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
 use crate::solver::conjugate_gradients::dot;
-use crate::{GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
+use crate::{GrainId, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
 pub(crate) use growth::LEAST_GRAIN;
 use level_elements::{LevelElements, LevelSectors};
@@ -336,7 +335,8 @@ impl<'a> Flow<'a> {
 
     /// All control points that an element of a level depends on; those of the surface's element that it descends from.
     fn dependencies(&self, level: usize, element: u32) -> Vec<u32> {
-        let element = ancestor(&self.network.levels()[self.surface..level], element);
+        let coarser = (self.surface..level).rev();
+        let element = coarser.fold(element, |element, level| self.network.level(level).parent(element));
         let vertices = self.surface().elements().corners(element);
         if self.level == self.surface {
             return vertices.to_vec();
@@ -353,12 +353,4 @@ impl<'a> Flow<'a> {
 
 pub(crate) fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
     points.par_iter().zip(moves).with_min_len(CHUNK).map(|(point, by)| *point + *by).collect()
-}
-
-/// The element of the first of some consecutive levels that an element of the level after the last descends from.
-fn ancestor(levels: &[Level], element: u32) -> u32 {
-    levels.iter().rev().fold(element, |element, parent| match &parent.mesh {
-        Mesh::Triangles(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
-        Mesh::Segments(_) => element / 2,
-    })
 }

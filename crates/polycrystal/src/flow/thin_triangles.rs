@@ -11,6 +11,7 @@ use subzero::{FaceId, VertexRule};
 use crate::energy::patch::{Elements, LocalStencils, index_in};
 use crate::energy::patches::local_elements;
 use crate::mesh::fold::LARGEST_FOLD;
+use crate::mesh::level::LevelMesh;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{Freedom, LevelView, Mesh, Network};
 
@@ -99,12 +100,13 @@ impl Room {
             Self { points: own.clone(), start, movable, stencils: Vec::new(), triangles, facing: Vec::new() };
         let mut coarser = own;
         for finer in level + 1..=network.level_count() {
-            let coarse = &network.levels()[finer - 1].mesh;
-            let Mesh::Triangles(mesh) = coarse else { return None };
-            let children = |element: &u32| mesh.counts().triangle_children(FaceId(*element));
+            let LevelMesh::Triangles(mesh) = network.level(finer - 1).mesh() else { return None };
+            let counts = mesh.counts();
+            let children = |element: &u32| counts.triangle_children(FaceId(*element));
             elements = elements.iter().flat_map(children).map(|triangle| triangle.0).collect();
             let (points, triangles) = local_triangles(network.level(finer).elements(), &elements)?;
-            room.stencils.push(LocalStencils::new(coarse, &coarser, &points));
+            let stencil = |point, entries: &mut Vec<_>| network.stencil(finer, point, entries);
+            room.stencils.push(LocalStencils::new(stencil, &coarser, &points));
             (coarser, room.triangles) = (points, triangles);
         }
         room.face(&elements, network.finest());
@@ -241,7 +243,7 @@ struct Distortion {
 
 /// Some elements of a mesh in terms of their own points, and these points, sorted.
 fn local_triangles(all: crate::Elements<'_>, elements: &[u32]) -> Option<(Vec<u32>, Vec<[u32; 3]>)> {
-    match local_elements(all, elements.iter().copied()) {
+    match local_elements(all, elements) {
         (points, Elements::Triangles(triangles)) => Some((points, triangles)),
         (_, Elements::Segments(_)) => None,
     }

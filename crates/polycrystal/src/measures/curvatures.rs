@@ -32,7 +32,7 @@ pub fn point_curvatures(surface: &Surface<'_>) -> Vec<PointCurvature> {
     let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
     match surface.elements {
         Elements::Triangles(triangles) => in_space(surface, triangles, &adjacency),
-        Elements::Refined(mesh) => in_space(surface, &mesh.refined_triangles(), &adjacency),
+        Elements::Refined(mesh) => in_space(surface, &mesh.triangles(), &adjacency),
         Elements::Segments(segments) => plane::curvatures(surface.points, segments, &adjacency.inner.pairs())
             .into_iter()
             .map(|mean| PointCurvature { mean, gaussian: if mean.is_nan() { mean } else { 0.0 } })

@@ -93,8 +93,9 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
     let surface = &complex.surface;
     let at = |point: u32| surface.points[point as usize].truncate();
     let by_boundary = BoundaryElements::new(surface);
-    let ends_of =
-        |boundary: usize| by_boundary.of(boundary).map(|segment| segments[segment as usize].map(at));
+    let ends_of = |boundary: usize| {
+        by_boundary.of(boundary).into_iter().map(|segment| segments[segment as usize].map(at))
+    };
     let mut sums: Vec<Sums> = (0..surface.sides.len()).map(|boundary| Sums::of(ends_of(boundary))).collect();
     for pair in &complex.inner_pairs() {
         let boundary = surface.boundary(pair[0]);

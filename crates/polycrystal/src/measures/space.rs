@@ -144,8 +144,9 @@ pub(crate) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
     let surface = &complex.surface;
     let at = |corner: u32| surface.points[corner as usize];
     let by_boundary = BoundaryElements::new(surface);
-    let corners_of =
-        |boundary: usize| by_boundary.of(boundary).map(|triangle| triangles[triangle as usize].map(at));
+    let corners_of = |boundary: usize| {
+        by_boundary.of(boundary).into_iter().map(|triangle| triangles[triangle as usize].map(at))
+    };
     let mut sums: Vec<Sums> =
         (0..surface.sides.len()).map(|boundary| Sums::of(corners_of(boundary))).collect();
     for pair in &complex.inner_pairs() {

@@ -1,9 +1,10 @@
 use rayon::prelude::*;
-use subzero::{EdgeId, FaceId, HalfEdgeId, TriangleMesh};
+use subzero::{EdgeId, FaceId, HalfEdgeId, RefinedMesh, TriangleMesh};
 
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
-use crate::{BoundaryId, Elements, LevelView, Mesh};
+use crate::mesh::level::LevelMesh;
+use crate::{BoundaryId, Elements, LevelView};
 
 /// Points whose edges a thread looks at in one go: enough to keep it busy.
 const POINTS_AT_ONCE: usize = 1 << 14;
@@ -22,8 +23,8 @@ pub(crate) struct Adjacency<'a> {
 pub(crate) enum Inner<'a> {
     /// One by one.
     Listed(Vec<[u32; 2]>),
-    /// As a mesh has them whose triangles have these boundaries, or as they are one subdivision on from there.
-    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], is_refined: bool },
+    /// As they follow from a mesh whose triangles have these boundaries.
+    OfMesh { mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId] },
 }
 
 impl Inner<'_> {
@@ -31,19 +32,13 @@ impl Inner<'_> {
     pub(crate) fn pairs(&self) -> Vec<[u32; 2]> {
         match self {
             Self::Listed(pairs) => pairs.clone(),
-            Self::OfMesh { mesh, boundary_of, is_refined } => {
-                let edges = (0..mesh.counts().edges).into_par_iter();
-                let inner = edges.filter_map(|edge| inner_half_edges(mesh, boundary_of, EdgeId(edge)));
-                if !is_refined {
-                    return inner.map(|pair| pair.map(|h| h.triangle().0)).collect();
-                }
-                // A triangle at a corner has the number of the half-edge that starts there.
-                let halves = inner.flat_map_iter(|[along, against]| {
-                    [[along.0, against.next().0], [along.next().0, against.0]]
+            Self::OfMesh { mesh, boundary_of } => {
+                let edges = (0..mesh.mesh().counts().edges).into_par_iter();
+                let inner = edges.filter_map(|edge| inner_half_edges(mesh.mesh(), boundary_of, EdgeId(edge)));
+                let pairs = (0..mesh.levels()).fold(inner.collect(), |pairs: Vec<_>, level| {
+                    refined_half_edges(&pairs, mesh.counts_of(level).triangles)
                 });
-                let half_edges = 3 * mesh.counts().triangles;
-                let inside = (0..half_edges).into_par_iter().map(|h| [h, half_edges + h / 3]);
-                halves.chain(inside).collect()
+                pairs.into_par_iter().map(|pair| pair.map(|h| h.triangle().0)).collect()
             }
         }
     }
@@ -58,6 +53,22 @@ fn inner_half_edges(
     let pair = mesh.edge_half_edges(edge)?;
     let [one, other] = pair.map(|h| boundary_of[h.triangle().index()]);
     (one == other).then_some(pair)
+}
+
+/// The half-edges of each edge one level on from so many triangles, given those of each edge between two of them: two for its halves, and then
+/// those for the edges inside the triangles.
+pub(crate) fn refined_half_edges(pairs: &[[HalfEdgeId; 2]], triangles: u32) -> Vec<[HalfEdgeId; 2]> {
+    // A triangle at a corner has the number of the half-edge that starts there.
+    let in_corner = |HalfEdgeId(h): HalfEdgeId, k: u32| HalfEdgeId(3 * h + k);
+    let halves = pairs.iter().flat_map(|[along, against]| {
+        [
+            [in_corner(*along, 0), in_corner(against.next(), 2)],
+            [in_corner(along.next(), 2), in_corner(*against, 0)],
+        ]
+    });
+    let half_edges = (0..3 * triangles).map(HalfEdgeId);
+    let inside = half_edges.map(|h| [in_corner(h, 1), HalfEdgeId(9 * triangles + h.0)]);
+    halves.chain(inside).collect()
 }
 
 /// A triangle at an edge that is not inside a boundary; in the plane, a segment at such a point.
@@ -100,13 +111,10 @@ impl<'a> Adjacency<'a> {
     /// The adjacency of a level, from the edges that its mesh knows.
     pub(crate) fn of_level(level: impl Into<LevelView<'a>>) -> Self {
         let level = level.into();
-        let held = level.held();
-        let boundary_of = &held.boundary_of;
-        match &held.mesh {
-            Mesh::Triangles(mesh) => {
-                Self::of_mesh(mesh, boundary_of, matches!(level, LevelView::Refined { .. }))
-            }
-            Mesh::Segments(mesh) => {
+        let boundary_of = level.labels();
+        match level.mesh() {
+            LevelMesh::Triangles(mesh) => Self::of_mesh(mesh, boundary_of),
+            LevelMesh::Segments(mesh) => {
                 let is_inner =
                     |pair: &[u32; 2]| boundary_of[pair[0] as usize] == boundary_of[pair[1] as usize];
                 let pair = |point: u32| {
@@ -123,21 +131,22 @@ impl<'a> Adjacency<'a> {
         }
     }
 
-    /// The adjacency of a mesh whose triangles have these boundaries, or of one subdivision on from there.
-    fn of_mesh(mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], is_refined: bool) -> Self {
-        let mut incidences = incidences_of_mesh(mesh, boundary_of);
-        if is_refined {
-            incidences = refined_incidences(mesh, &incidences);
-        }
+    /// The adjacency of what follows from a mesh whose triangles have these boundaries.
+    fn of_mesh(mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId]) -> Self {
+        let of_mesh = incidences_of_mesh(mesh.mesh(), boundary_of);
+        let mut incidences = (1..=mesh.levels()).fold(of_mesh, |incidences, levels| {
+            let finer = mesh.at(levels);
+            refined_incidences(finer, &incidences)
+        });
         incidences.par_sort_unstable();
-        Self { inner: Inner::OfMesh { mesh, boundary_of, is_refined }, incidences }
+        Self { inner: Inner::OfMesh { mesh, boundary_of }, incidences }
     }
 
     /// The adjacency of any elements.
     pub(crate) fn of_elements(elements: Elements<'a>, boundary_of: &'a [BoundaryId]) -> Self {
         match elements {
             Elements::Triangles(triangles) => Self::of_triangles(triangles, boundary_of),
-            Elements::Refined(mesh) => Self::of_mesh(mesh, boundary_of, true),
+            Elements::Refined(mesh) => Self::of_mesh(mesh, boundary_of),
             Elements::Segments(segments) => {
                 let mut incidences: Vec<Incidence> = incidences_of_segments(segments).collect();
                 incidences.par_sort_unstable();
@@ -255,13 +264,13 @@ fn incidences_of_mesh(mesh: &TriangleMesh, boundary_of: &[BoundaryId]) -> Vec<In
     incidences.collect()
 }
 
-/// The incidences one subdivision on: each triangle along an edge leaves two at its halves.
-fn refined_incidences(mesh: &TriangleMesh, incidences: &[Incidence]) -> Vec<Incidence> {
+/// The incidences on a level, given those of the one before: each triangle along an edge leaves two at its halves.
+fn refined_incidences(finer: RefinedMesh<'_>, incidences: &[Incidence]) -> Vec<Incidence> {
     let halves = incidences.par_iter().flat_map_iter(|at| {
         let start = HalfEdgeId(3 * at.element + u32::from(at.corner));
         // Triangles at corners have the numbers of the half-edges that start there: the edge is their first, and the last of the next one.
         [(start, 0), (start.next(), 2)].map(|(child, corner)| {
-            let edge = mesh.refined_edge(HalfEdgeId(3 * child.0 + u32::from(corner)));
+            let edge = finer.edge_of(HalfEdgeId(3 * child.0 + u32::from(corner)));
             Incidence { edge: edge.0, element: child.0, corner }
         })
     });

@@ -1,6 +1,6 @@
-use subzero::{HalfEdgeId, TriangleMesh};
+use subzero::{FaceId, HalfEdgeId, RefinedMesh};
 
-use crate::mesh::adjacency::{Adjacency, Inner};
+use crate::mesh::adjacency::{Adjacency, Inner, refined_half_edges};
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::{BoundaryId, Elements, LevelView, Surface};
@@ -37,29 +37,34 @@ impl<'a> BoundaryElements<'a> {
     /// Number of elements of a boundary.
     pub(crate) fn count(&self, boundary: usize) -> usize {
         let labelled = self.labelled.of(boundary).len();
-        if let Elements::Refined(_) = self.elements { 4 * labelled } else { labelled }
+        labelled << (2 * self.levels())
     }
 
-    /// The elements of a boundary, in order.
-    pub(crate) fn of(&self, boundary: usize) -> impl Iterator<Item = u32> + Clone {
-        let labelled = self.labelled.of(boundary);
-        let (whole, parents) = match self.elements {
-            // The triangles at the corners come before those in the centres.
-            Elements::Refined(mesh) => (&[][..], Some((labelled, id(3 * mesh.triangles().len())))),
-            Elements::Triangles(_) | Elements::Segments(_) => (labelled, None),
-        };
-        let children = parents.into_iter().flat_map(|(parents, first_centre)| {
-            let corners = parents.iter().flat_map(|parent| [3 * parent, 3 * parent + 1, 3 * parent + 2]);
-            corners.chain(parents.iter().map(move |parent| first_centre + parent))
-        });
-        whole.iter().copied().chain(children)
+    /// How many levels elements are finer than those that hold their labels.
+    fn levels(&self) -> usize {
+        match self.elements {
+            Elements::Refined(mesh) => mesh.levels(),
+            Elements::Triangles(_) | Elements::Segments(_) => 0,
+        }
+    }
+
+    /// The elements of a boundary, in order. Where they are refined, they are numbered among themselves as [`MeshCounts`](subzero::MeshCounts) says, too.
+    pub(crate) fn of(&self, boundary: usize) -> Vec<u32> {
+        let labelled = self.labelled.of(boundary).to_vec();
+        let Elements::Refined(mesh) = self.elements else { return labelled };
+        (0..mesh.levels()).fold(labelled, |parents, level| {
+            let children = |parent: &u32| mesh.counts_of(level).triangle_children(FaceId(*parent));
+            let corners = parents.iter().flat_map(|parent| children(parent).into_iter().take(3));
+            let centres = parents.iter().map(|parent| children(parent)[3]);
+            corners.chain(centres).map(|child| child.0).collect()
+        })
     }
 }
 
 /// Which elements of a boundary are neighbours.
 pub(crate) enum BoundaryNeighbors<'a> {
-    /// As the mesh of the labelled elements has them, which have these boundaries and indices in them.
-    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], index_of: Vec<u32> },
+    /// As they follow from the mesh of the labelled elements, which have these boundaries and indices in them.
+    OfMesh { mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId], index_of: Vec<u32> },
     /// Pairs of indices, boundary by boundary.
     Listed(Grouped<[u32; 2]>),
 }
@@ -77,7 +82,7 @@ impl<'a> BoundaryNeighbors<'a> {
             (0u32..).zip(labelled).for_each(|(index, element)| index_of[*element as usize] = index);
         }
         match &adjacency.inner {
-            Inner::OfMesh { mesh, .. } => Self::OfMesh { mesh, boundary_of, index_of },
+            Inner::OfMesh { mesh, .. } => Self::OfMesh { mesh: *mesh, boundary_of, index_of },
             Inner::Listed(pairs) => {
                 let pairs = pairs.iter().map(|pair| {
                     let boundary = boundary_of[pair[0] as usize].index();
@@ -96,31 +101,17 @@ impl<'a> BoundaryNeighbors<'a> {
         };
         let labelled = boundaries.labelled.of(boundary);
         // The half-edge counted by the triangle's index.
-        let counted = |h: HalfEdgeId| 3 * index_of[h.triangle().index()] + h.0 % 3;
-        let mut pairs = Vec::with_capacity(2 * boundaries.count(boundary));
-        for (index, triangle) in (0u32..).zip(labelled) {
-            for k in 0..3 {
-                let h = HalfEdgeId(3 * triangle + k);
-                let is_own = |beyond: &HalfEdgeId| {
-                    *beyond > h && boundary_of[beyond.triangle().index()].index() == boundary
-                };
-                let beyond = mesh.half_edge_beyond(h).filter(is_own);
-                match boundaries.elements {
-                    Elements::Refined(_) => {
-                        let centre = id(3 * labelled.len()) + index;
-                        pairs.push([3 * index + k, centre]);
-                        if let Some(beyond) = beyond {
-                            // The halves of the edge: a triangle at a corner has the number of the half-edge that starts there.
-                            pairs.push([3 * index + k, counted(beyond.next())]);
-                            pairs.push([3 * index + (k + 1) % 3, counted(beyond)]);
-                        }
-                    }
-                    Elements::Triangles(_) | Elements::Segments(_) => {
-                        pairs.extend(beyond.map(|beyond| [index, index_of[beyond.triangle().index()]]));
-                    }
-                }
-            }
-        }
-        pairs
+        let counted = |h: HalfEdgeId| HalfEdgeId(3 * index_of[h.triangle().index()] + h.0 % 3);
+        let is_own = |triangle: FaceId| boundary_of[triangle.index()].index() == boundary;
+        let half_edges =
+            labelled.iter().flat_map(|triangle| (3 * triangle..3 * triangle + 3).map(HalfEdgeId));
+        let pairs = half_edges.filter_map(|h| {
+            let beyond = mesh.mesh().half_edge_beyond(h)?;
+            (beyond > h && is_own(beyond.triangle())).then(|| [h, beyond].map(counted))
+        });
+        let count = id(labelled.len());
+        let pairs = (0..mesh.levels())
+            .fold(pairs.collect(), |pairs: Vec<_>, level| refined_half_edges(&pairs, count << (2 * level)));
+        pairs.into_iter().map(|pair| pair.map(|h| h.triangle().0)).collect()
     }
 }

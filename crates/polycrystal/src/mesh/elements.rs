@@ -2,7 +2,7 @@ use std::ops::Deref;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{FaceId, TriangleMesh};
+use subzero::{FaceId, RefinedMesh};
 use voronoi::Dimension;
 
 use crate::Mesh;
@@ -12,8 +12,8 @@ use crate::Mesh;
 pub enum Elements<'a> {
     /// In space.
     Triangles(&'a [[u32; 3]]),
-    /// In space, the triangles one subdivision on from a mesh, which are known without being held.
-    Refined(&'a TriangleMesh),
+    /// In space, triangles that are known without being held.
+    Refined(RefinedMesh<'a>),
     /// In the plane.
     Segments(&'a [[u32; 2]]),
 }
@@ -39,7 +39,7 @@ impl<'a> Elements<'a> {
     pub fn len(self) -> usize {
         match self {
             Self::Triangles(triangles) => triangles.len(),
-            Self::Refined(mesh) => 4 * mesh.triangles().len(),
+            Self::Refined(mesh) => mesh.counts().triangles as usize,
             Self::Segments(segments) => segments.len(),
         }
     }
@@ -65,7 +65,7 @@ impl<'a> Elements<'a> {
     pub fn corners(self, element: u32) -> Corners {
         match self {
             Self::Triangles(triangles) => Corners { points: triangles[element as usize], count: 3 },
-            Self::Refined(mesh) => Corners { points: mesh.refined_triangle(FaceId(element)), count: 3 },
+            Self::Refined(mesh) => Corners { points: mesh.triangle(FaceId(element)), count: 3 },
             Self::Segments(segments) => {
                 let [start, end] = segments[element as usize];
                 Corners { points: [start, end, end], count: 2 }
@@ -87,7 +87,7 @@ impl<'a> Elements<'a> {
     pub(crate) fn labelled(self, element: u32) -> u32 {
         match self {
             Self::Triangles(_) | Self::Segments(_) => element,
-            Self::Refined(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
+            Self::Refined(mesh) => mesh.ancestor(FaceId(element)).0,
         }
     }
 

@@ -1,6 +1,6 @@
 use cancellation::check_cancelled;
 use rayon::prelude::*;
-use subzero::{EdgeId, MeshError};
+use subzero::{CurveMesh, EdgeId, EdgeParent, FaceId, MeshError, RefinedMesh};
 
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -28,20 +28,33 @@ pub struct Level {
     pub(crate) at_edges: Vec<Meeting>,
 }
 
-/// One level of a network: held in memory, or known from the level before.
+/// One level of a network: held in memory, or known from a level before.
 #[derive(Debug, Clone, Copy)]
 pub enum LevelView<'a> {
     /// In memory.
     Held(&'a Level),
-    /// One subdivision on from a level in space: all of it follows from ids, but for the copies.
-    Refined {
-        /// The level before.
-        parent: &'a Level,
-        /// Which vertices are others moved by whole periods.
-        copies: &'a PeriodicCopies,
-        /// Number of subdivisions of the control mesh that lead to it.
-        generation: u8,
-    },
+    /// In space: all of it follows from ids, but for the copies.
+    Refined(RefinedLevel<'a>),
+}
+
+/// The mesh of a level, held or not.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum LevelMesh<'a> {
+    /// In space.
+    Triangles(RefinedMesh<'a>),
+    /// In the plane.
+    Segments(&'a CurveMesh),
+}
+
+/// A level in space that follows from one in memory.
+#[derive(Debug, Clone, Copy)]
+pub struct RefinedLevel<'a> {
+    held: &'a Level,
+    mesh: RefinedMesh<'a>,
+    boundaries: &'a [Boundary],
+    copies: &'a PeriodicCopies,
+    /// Number of subdivisions of the control mesh that lead to it.
+    generation: usize,
 }
 
 impl<'a> From<&'a Level> for LevelView<'a> {
@@ -55,7 +68,7 @@ impl<'a> LevelView<'a> {
     pub fn vertex_count(self) -> usize {
         match self {
             Self::Held(level) => level.vertex_count(),
-            Self::Refined { parent, .. } => parent.vertex_count() + parent.at_edges.len(),
+            Self::Refined(level) => level.mesh.counts().vertices as usize,
         }
     }
 
@@ -66,9 +79,18 @@ impl<'a> LevelView<'a> {
 
     /// The triangles or segments.
     pub fn elements(self) -> Elements<'a> {
-        match (self, &self.held().mesh) {
-            (Self::Refined { .. }, Mesh::Triangles(mesh)) => Elements::Refined(mesh),
-            (_, mesh) => mesh.into(),
+        match self {
+            Self::Held(level) => (&level.mesh).into(),
+            Self::Refined(level) => Elements::Refined(level.mesh),
+        }
+    }
+
+    /// Its mesh.
+    pub(crate) fn mesh(self) -> LevelMesh<'a> {
+        match self {
+            Self::Held(Level { mesh: Mesh::Triangles(mesh), .. }) => LevelMesh::Triangles(mesh.into()),
+            Self::Held(Level { mesh: Mesh::Segments(mesh), .. }) => LevelMesh::Segments(mesh),
+            Self::Refined(level) => LevelMesh::Triangles(level.mesh),
         }
     }
 
@@ -84,31 +106,52 @@ impl<'a> LevelView<'a> {
 
     /// What a vertex is part of.
     pub fn node_type(self, vertex: usize) -> NodeType {
-        self.born(vertex).map_or_else(|| self.held().node_types[vertex], |at| at.node_type)
+        match self {
+            Self::Refined(level) if vertex >= level.held.vertex_count() => level.born(vertex).node_type,
+            _ => self.held().node_types[vertex],
+        }
     }
 
     /// How many grains meet at a vertex, as of [`Level::grain_counts`].
     pub fn grain_count(self, vertex: usize) -> u8 {
-        self.born(vertex).map_or_else(|| self.held().grain_counts[vertex], |at| at.grains)
+        match self {
+            Self::Refined(level) if vertex >= level.held.vertex_count() => level.born(vertex).grains,
+            _ => self.held().grain_counts[vertex],
+        }
     }
 
     /// The level on which a vertex was born.
     pub fn generation(self, vertex: usize) -> u8 {
         match self {
-            Self::Refined { parent, generation, .. } if vertex >= parent.vertex_count() => generation,
+            Self::Refined(level) if vertex >= level.held.vertex_count() => {
+                let (parents, _) = level.birth(vertex);
+                let first = level.generation - level.mesh.levels();
+                u8::try_from(first + parents.levels() + 1).expect("there are fewer than 128 levels")
+            }
             _ => self.held().generations[vertex],
         }
     }
 
     /// The walls that a vertex stays on.
-    pub(crate) fn walls(self, vertex: usize, sets: &WallSets) -> WallSet {
-        let held = self.held();
-        match (self, &held.mesh) {
-            (Self::Refined { .. }, Mesh::Triangles(mesh)) if vertex >= held.vertex_count() => {
-                let edge = vertex - held.vertex_count();
-                walls_between(held, mesh.edge(EdgeId(id(edge))), &held.at_edges[edge], sets)
+    pub fn walls(self, vertex: usize, sets: &WallSets) -> WallSet {
+        match self {
+            Self::Refined(level) if vertex >= level.held.vertex_count() => {
+                if !level.born(vertex).node_type.is_outer() {
+                    return WallSet::EMPTY;
+                }
+                let (parents, edge) = level.birth(vertex);
+                let [a, b] = parents.edge(edge).map(|end| self.walls(end as usize, sets));
+                sets.intersection(a, b)
             }
-            _ => held.walls[vertex],
+            _ => self.held().walls[vertex],
+        }
+    }
+
+    /// The element in which one of the next level lies.
+    pub(crate) fn parent(self, element: u32) -> u32 {
+        match self.mesh() {
+            LevelMesh::Triangles(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
+            LevelMesh::Segments(_) => element / 2,
         }
     }
 
@@ -116,7 +159,7 @@ impl<'a> LevelView<'a> {
     pub fn copies(self) -> &'a PeriodicCopies {
         match self {
             Self::Held(level) => &level.copies,
-            Self::Refined { copies, .. } => copies,
+            Self::Refined(level) => level.copies,
         }
     }
 
@@ -129,10 +172,11 @@ impl<'a> LevelView<'a> {
         originals
     }
 
-    /// What is in memory of it: the level itself, or the one before.
+    /// What is in memory of it: the level itself, or the one from which it follows.
     pub fn held(self) -> &'a Level {
         match self {
-            Self::Held(level) | Self::Refined { parent: level, .. } => level,
+            Self::Held(level) => level,
+            Self::Refined(level) => level.held,
         }
     }
 
@@ -140,11 +184,43 @@ impl<'a> LevelView<'a> {
     pub fn labels(self) -> &'a [BoundaryId] {
         &self.held().boundary_of
     }
+}
 
-    /// What meets where a vertex was born that the level in memory does not have.
-    fn born(self, vertex: usize) -> Option<&'a Meeting> {
-        let held = self.held();
-        vertex.checked_sub(held.vertex_count()).map(|edge| &held.at_edges[edge])
+impl<'a> RefinedLevel<'a> {
+    /// Level `generation`, which has these copies and is so many subdivisions on from a level in space.
+    pub(crate) fn new(
+        held: &'a Level,
+        levels: usize,
+        boundaries: &'a [Boundary],
+        copies: &'a PeriodicCopies,
+        generation: usize,
+    ) -> Self {
+        let mesh = held.refined_mesh(levels).expect("ids were counted when the network was made");
+        Self { held, mesh, boundaries, copies, generation }
+    }
+
+    /// The level before that on which a vertex that is not in memory was born, and the edge there.
+    fn birth(&self, vertex: usize) -> (RefinedMesh<'a>, EdgeId) {
+        let before = |levels: &usize| self.mesh.counts_of(*levels).vertices as usize <= vertex;
+        let parents = (0..self.mesh.levels()).rev().find(before).expect("it is not in memory");
+        let parents = self.mesh.at(parents);
+        (parents, EdgeId(id(vertex) - parents.counts().vertices))
+    }
+
+    /// What meets where such a vertex was born.
+    fn born(&self, vertex: usize) -> Meeting {
+        let (mut parents, mut edge) = self.birth(vertex);
+        while let Some(levels) = parents.levels().checked_sub(1) {
+            parents = parents.at(levels);
+            match parents.counts().edge_parent(edge) {
+                EdgeParent::Edge(parent) => edge = parent,
+                EdgeParent::Triangle(triangle) => {
+                    let boundary = self.held.boundary_of[parents.ancestor(triangle).index()];
+                    return Meeting::inside(&self.boundaries[boundary.index()]);
+                }
+            }
+        }
+        self.held.at_edges[edge.index()]
     }
 }
 
@@ -216,20 +292,26 @@ impl Level {
         let mut walls = self.walls.clone();
         walls.extend(ends.iter().zip(born).map(|(ends, born)| walls_between(self, *ends, born, sets)));
         check_cancelled();
-        let copies = self.refined_copies((&mesh).into());
+        let copies = self.copies.refined(self.vertex_count(), self.element_count(), (&mesh).into());
         Self { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges }
     }
 
-    /// The copies on the next level in space, which itself is not made.
-    pub(crate) fn finest_copies(&self) -> Result<PeriodicCopies, MeshError> {
+    /// The mesh of a level in space refined so many times.
+    fn refined_mesh(&self, levels: usize) -> Result<RefinedMesh<'_>, MeshError> {
         let Mesh::Triangles(mesh) = &self.mesh else { unreachable!("all levels in the plane are held") };
-        mesh.counts().refined()?;
-        Ok(self.refined_copies(Elements::Refined(mesh)))
+        RefinedMesh::new(mesh, levels)
     }
 
-    /// The copies on the next level, which has these elements.
-    fn refined_copies(&self, finer: Elements<'_>) -> PeriodicCopies {
-        self.copies.refined(self.vertex_count(), self.element_count(), finer)
+    /// The copies on so many levels after one in space, none of which is made.
+    pub(crate) fn copies_beyond(&self, levels: usize) -> Result<Vec<PeriodicCopies>, MeshError> {
+        let mut copies: Vec<PeriodicCopies> = Vec::new();
+        for level in 0..levels {
+            let counts = self.refined_mesh(level)?.counts();
+            let finer = Elements::Refined(self.refined_mesh(level + 1)?);
+            let before = copies.last().unwrap_or(&self.copies);
+            copies.push(before.refined(counts.vertices as usize, counts.triangles as usize, finer));
+        }
+        Ok(copies)
     }
 
     /// What meets inside an element.

@@ -55,7 +55,7 @@ impl Cone {
 pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
     let boundaries = BoundaryElements::new(surface);
     let cones = (0..boundaries.boundary_count()).into_par_iter();
-    cones.map(|boundary| cone_of_boundary(surface, boundaries.of(boundary))).collect()
+    cones.map(|boundary| cone_of_boundary(surface, &boundaries.of(boundary))).collect()
 }
 
 /// Per boundary of a level in space, which has this mesh, the cone from a point of it to its surface two levels on, for the points one level on.
@@ -81,46 +81,57 @@ pub(crate) fn refined_cones(
 }
 
 /// The cone from the first point of some elements to them.
-pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: impl Iterator<Item = u32>) -> Cone {
+pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: &[u32]) -> Cone {
     let at = |vertex: u32| surface.points[vertex as usize];
     let mut sum = ElementSum::default();
     for element in elements {
-        match *surface.elements.corners(element) {
+        match *surface.elements.corners(*element) {
             [a, b, c] => sum.add_triangle([a, b, c].map(at)),
             [a, b] => sum.add_segment([a, b].map(at)),
             _ => unreachable!("elements have two or three points"),
-        }
+        };
     }
     sum.cone(surface.elements.dimension())
 }
 
 /// What elements of a boundary add up to, from the first point of the first.
 #[derive(Debug, Clone, Copy, Default)]
-struct ElementSum {
+pub(crate) struct ElementSum {
     apex: Option<DVec3>,
     volume: f64,
-    area: DVec3,
+    /// Of all normals.
+    normal: DVec3,
 }
 
 impl ElementSum {
+    /// Adds a triangle, and gives its normal, as long as twice its area.
     #[inline]
-    fn add_triangle(&mut self, corners: [DVec3; 3]) {
+    pub(crate) fn add_triangle(&mut self, corners: [DVec3; 3]) -> DVec3 {
         let apex = *self.apex.get_or_insert(corners[0]);
-        let [a, b, c] = corners.map(|corner| corner - apex);
-        let doubled_area = (b - a).cross(c - a);
-        self.volume += a.dot(doubled_area) / 6.0;
-        self.area += doubled_area / 2.0;
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a);
+        self.volume += (a - apex).dot(normal) / 6.0;
+        self.normal += normal;
+        normal
     }
 
-    fn add_segment(&mut self, ends: [DVec3; 2]) {
+    /// Adds a segment in the plane, and gives its normal, as long as it is.
+    pub(crate) fn add_segment(&mut self, ends: [DVec3; 2]) -> DVec3 {
         let apex = *self.apex.get_or_insert(ends[0]);
-        let [a, b] = ends.map(|end| end - apex);
-        self.volume += segment_area([a, b]);
-        self.area += (b - a).cross(DVec3::Z);
+        let [a, b] = ends;
+        let normal = (b - a).cross(DVec3::Z);
+        self.volume += segment_area([a - apex, b - apex]);
+        self.normal += normal;
+        normal
     }
 
-    fn cone(self, dimension: Dimension) -> Cone {
-        Cone::new(self.apex.unwrap_or(DVec3::ZERO), self.volume, self.area, dimension)
+    /// The cone to them.
+    pub(crate) fn cone(self, dimension: Dimension) -> Cone {
+        let area = match dimension {
+            Dimension::Two => self.normal,
+            Dimension::Three => self.normal / 2.0,
+        };
+        Cone::new(self.apex.unwrap_or(DVec3::ZERO), self.volume, area, dimension)
     }
 }
 

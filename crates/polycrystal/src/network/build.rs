@@ -2,6 +2,7 @@
 
 use cancellation::check_cancelled;
 use glam::DVec3;
+use subzero::RefinedMesh;
 use voronoi::{Domain, Tessellation};
 
 use super::Network;
@@ -218,10 +219,7 @@ impl Network {
             check_cancelled();
             levels.push(levels[coarser].refine(&boundaries, &wall_sets)?);
         }
-        let finest_copies = match &levels[levels.len() - 1] {
-            held if levels.len() <= level_count => Some(held.finest_copies()?),
-            _ => None,
-        };
+        let finer_copies = levels[levels.len() - 1].copies_beyond(level_count + 1 - levels.len())?;
         let is_between_grains = |boundary: &Boundary| boundary.is_interior() || boundary.twin.is_some();
         let tension = |boundary: &Boundary| if is_between_grains(boundary) { 1.0 } else { 0.0 };
         let network = Self {
@@ -233,7 +231,7 @@ impl Network {
             cell_volumes,
             wall_sets,
             levels,
-            finest_copies,
+            finer_copies,
         };
         Ok((network, points))
     }
@@ -265,7 +263,7 @@ impl Network {
             mobilities: self.mobilities.clone(),
             wall_sets: self.wall_sets.clone(),
             levels: vec![level],
-            finest_copies: None,
+            finer_copies: Vec::new(),
         }
     }
 }
@@ -273,12 +271,13 @@ impl Network {
 /// The finest level whose points relaxation may move by themselves: it has forty inside a face.
 pub(crate) const FINEST_MOVED: usize = 2;
 
-/// The finest level that is held in memory of so many: points of no finer one move by themselves, and the last follows from the one before. In
-/// the plane, where levels are small, all.
+/// The finest level that is held in memory of so many: two more follow from it. In the plane, where levels are small, all are held, and in space those
+/// of few, whose points may move by themselves.
 fn finest_held(domain: &Domain, level_count: usize) -> usize {
     match domain.dimension() {
         voronoi::Dimension::Two => level_count,
-        voronoi::Dimension::Three => FINEST_MOVED.max(level_count.saturating_sub(1)),
+        voronoi::Dimension::Three if level_count <= FINEST_MOVED => level_count,
+        voronoi::Dimension::Three => level_count - RefinedMesh::MOST_LEVELS,
     }
 }
 

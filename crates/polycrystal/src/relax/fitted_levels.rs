@@ -58,7 +58,7 @@ impl Network {
             let places = flat.iter().zip(&fitted).zip(&is_flat);
             let mut points: Vec<DVec3> =
                 places.map(|((flat, fitted), is_flat)| if *is_flat { *flat } else { *fitted }).collect();
-            if !has_kept_volumes(&network, &points) && flow.restore_volumes(&mut points).is_err() {
+            if !has_kept_volumes(&network, 0, &points) && flow.restore_volumes(&mut points).is_err() {
                 // No single place is at fault.
                 is_flat.fill(true);
                 continue;

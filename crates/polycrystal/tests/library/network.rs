@@ -193,27 +193,32 @@ fn networks_beyond_32_bit_ids_are_refused() {
     assert!(Network::new(&tessellation, Junctions::Crease, usize::MAX).is_err());
 }
 
-/// A finest level that follows from the one before is the one that is made by refinement, in what it has and what is found of it.
+/// Levels that follow from one in memory are those that refinement makes, in what they have and what is found of them.
 #[test]
-fn the_finest_level_is_known_without_being_held() {
+fn the_finest_levels_are_known_without_being_held() {
     let periodic = Domain::unit_cube().with_periods(BVec3::TRUE);
     for domain in [Domain::unit_cube(), periodic] {
         let (network, flat) = random_network(&domain, 8, 5, 3);
-        assert_eq!((network.level_count(), network.levels().len()), (3, 3));
+        assert_eq!((network.level_count(), network.levels().len()), (3, 2));
+        for level in 2..=3 {
+            let (known, whole) = (network.level(level), network.whole_level(level));
+            assert_eq!(known.vertex_count(), whole.vertex_count());
+            assert_eq!(known.element_count(), whole.element_count());
+            let of_whole = elements(&whole);
+            for (element, (corners, boundary)) in (0u32..).zip(of_whole.iter().zip(&whole.boundary_of)) {
+                let known_corners: Vec<usize> =
+                    known.elements().corners(element).iter().map(|corner| *corner as usize).collect();
+                assert_eq!((&known_corners, known.boundary(element)), (corners, *boundary));
+            }
+            for vertex in 0..whole.vertex_count() {
+                assert_eq!(known.node_type(vertex), whole.node_types[vertex]);
+                assert_eq!(known.grain_count(vertex), whole.grain_counts[vertex]);
+                assert_eq!(known.generation(vertex), whole.generations[vertex]);
+                assert_eq!(known.walls(vertex, network.wall_sets()), whole.walls[vertex]);
+            }
+            assert_eq!(known.copies(), &whole.copies);
+        }
         let (known, whole) = (network.finest(), network.finest_level());
-        assert_eq!(known.vertex_count(), whole.vertex_count());
-        assert_eq!(known.element_count(), whole.element_count());
-        for (element, (corners, boundary)) in (0u32..).zip(elements(&whole).iter().zip(&whole.boundary_of)) {
-            let known_corners: Vec<usize> =
-                known.elements().corners(element).iter().map(|corner| *corner as usize).collect();
-            assert_eq!((&known_corners, known.boundary(element)), (corners, *boundary));
-        }
-        for vertex in 0..whole.vertex_count() {
-            assert_eq!(known.node_type(vertex), whole.node_types[vertex]);
-            assert_eq!(known.grain_count(vertex), whole.grain_counts[vertex]);
-            assert_eq!(known.generation(vertex), whole.generations[vertex]);
-        }
-        assert_eq!(known.copies(), &whole.copies);
 
         let mut points = network.subdivide(&flat);
         let sides = network.sides();

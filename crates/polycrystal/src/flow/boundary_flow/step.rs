@@ -126,7 +126,7 @@ impl Flow<'_> {
         };
         let LevelElements { level, boundaries, neighbors } = &self.elements;
         let of_boundary = |boundary: usize| {
-            let own: Vec<u32> = boundaries.of(boundary).collect();
+            let own = boundaries.of(boundary);
             let normals = |points: &[DVec3]| -> Vec<DVec3> {
                 own.iter().map(|element| level.elements().normal(points, *element)).collect()
             };

@@ -107,10 +107,13 @@ impl Flow<'_> {
     }
 }
 
-/// Whether grains have the volumes of their cells, up to rounding, for points of the finest level.
-pub(crate) fn has_kept_volumes(network: &Network, surface: &[DVec3]) -> bool {
-    let missing = missing_volumes(network, &network.grain_volumes(network.finest(), surface));
-    is_rounding(network, &missing, surface)
+/// Whether grains have the volumes of their cells on the finest level, up to rounding, for the points of a level.
+pub(crate) fn has_kept_volumes(network: &Network, level: usize, points: &[DVec3]) -> bool {
+    let finest = network.level_count();
+    let missing = missing_volumes(network, &network.grain_volumes_between(level, finest, points));
+    let (_, relative_error) = largest_relative_error(&missing, network.cell_volumes());
+    relative_error <= VOLUME_LIMIT
+        || is_rounding(network, &missing, &network.subdivide_between(level, finest, points))
 }
 
 /// What each grain's volume lacks.
