@@ -150,7 +150,7 @@ pub(crate) fn inspect(
         || rayon::join(|| crossing_elements(surface, adjacency, &boundaries, &survey.boxes), of_angles),
         || {
             rayon::join(
-                || (meetings(surface), duplicate_points(surface.points)),
+                || (meetings(surface, &boundaries), duplicate_points(surface.points)),
                 || (closedness_and_pinches(surface, adjacency), Pieces::new(surface)),
             )
         },
@@ -286,45 +286,44 @@ fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
 }
 
 /// What meets at each point by the sides around it; nothing where there is no element.
-fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
+fn meetings(surface: &Surface<'_>, boundaries: &BoundaryElements<'_>) -> Vec<Option<Meeting>> {
     const NONE: u32 = u32::MAX;
-    const SEVERAL: u32 = u32::MAX - 1;
-    let mut boundaries = vec![NONE; surface.points.len()];
-    let elements = || (0..id(surface.elements.len())).map(|element| (element, surface.boundary(element)));
-    for (element, boundary) in elements() {
-        for corner in surface.elements.corners(element).iter() {
-            let at = &mut boundaries[*corner as usize];
-            *at = if *at == NONE || *at == boundary.0 { boundary.0 } else { SEVERAL };
-        }
-    }
-    // Points with their boundaries. The elements of a boundary come one after the other for the most part.
+    let mut first = vec![NONE; surface.points.len()];
+    // Points with further boundaries.
     let mut around: Vec<u64> = Vec::new();
-    let mut latest = vec![NONE; surface.points.len()];
-    for (element, boundary) in elements() {
-        let corners = surface.elements.corners(element);
-        for corner in corners.iter().filter(|corner| boundaries[**corner as usize] == SEVERAL) {
-            let latest = &mut latest[*corner as usize];
-            if *latest != boundary.0 {
-                *latest = boundary.0;
-                around.push(join(*corner, boundary.0));
+    let mut of_others = Vec::new();
+    for boundary in 0..id(boundaries.boundary_count()) {
+        of_others.clear();
+        for element in boundaries.of(boundary as usize) {
+            for corner in surface.elements.corners(element).iter() {
+                match &mut first[*corner as usize] {
+                    first if *first == NONE => *first = boundary,
+                    first if *first != boundary => of_others.push(*corner),
+                    _ => {}
+                }
             }
         }
+        of_others.sort_unstable();
+        of_others.dedup();
+        around.extend(of_others.iter().map(|point| join(*point, boundary)));
     }
     around.par_sort_unstable();
-    around.dedup();
-    let of_one = |boundary: u32| {
-        let mut sides = surface.sides.get(boundary as usize).copied()?;
+    let sides_of = |boundary: u32| surface.sides.get(boundary as usize).copied();
+    let of_one = |boundary: &u32| {
+        let mut sides = sides_of(*boundary)?;
         sides.sort_unstable();
         Some(Meeting::of_sides(&sides))
     };
-    let mut meetings: Vec<Option<Meeting>> = boundaries.into_iter().map(of_one).collect();
+    let mut meetings: Vec<Option<Meeting>> = first.iter().map(of_one).collect();
     let mut sides: Vec<Side> = Vec::new();
     for at in around.chunk_by(|a, b| high(*a) == high(*b)) {
+        let point = high(at[0]) as usize;
         sides.clear();
+        sides.extend(sides_of(first[point]).into_iter().flatten());
         sides.extend(at.iter().flat_map(|at| surface.sides[low(*at) as usize]));
         sides.sort_unstable();
         sides.dedup();
-        meetings[high(at[0]) as usize] = Some(Meeting::of_sides(&sides));
+        meetings[point] = Some(Meeting::of_sides(&sides));
     }
     meetings
 }

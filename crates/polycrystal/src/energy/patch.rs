@@ -20,14 +20,15 @@ use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 pub(crate) struct Patch {
     /// The control points that the boundary depends on; all other fields count them from 0.
     pub(crate) control_points: Vec<u32>,
-    /// The elements of the control mesh.
+    /// The elements of the control mesh. Its points and edges come in the order of their ids, so points of the next level do, too: first the control
+    /// points, then those on the edges.
     pub(crate) elements: Elements,
     /// The edges of the control mesh.
     pub(crate) edges: Vec<[u32; 2]>,
     /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
     pub(crate) edges_across: Vec<[u32; 3]>,
-    /// The surface, where it is finer than the control mesh.
-    pub(crate) refinement: Option<Refinement>,
+    /// How the points of the surface follow, where it is that of the next level.
+    pub(crate) stencils: Option<LocalStencils>,
     pub(crate) law: Law,
 }
 
@@ -47,13 +48,6 @@ pub(crate) struct Law {
 pub(crate) enum Elements {
     Triangles(Vec<[u32; 3]>),
     Segments(Vec<[u32; 2]>),
-}
-
-/// A surface that is finer than the control mesh.
-#[derive(Debug)]
-pub(crate) struct Refinement {
-    pub(crate) stencils: LocalStencils,
-    pub(crate) elements: Elements,
 }
 
 /// How finer points of one boundary follow from its coarser ones.
@@ -154,15 +148,32 @@ impl Patch {
         let apex = points[self.control_points[0] as usize];
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
         self.add_stiffness(&local, largest_cotangent, stiffness);
-        let Some(Refinement { stencils, elements }) = &self.refinement else {
-            let [energy, volume] = self.law.add_variation(&self.elements, &local, terms);
+        let Some(stencils) = &self.stencils else {
+            let [energy, volume] = match &self.elements {
+                Elements::Triangles(triangles) => {
+                    self.law.add_triangles(triangles.iter().copied(), &local, terms)
+                }
+                Elements::Segments(segments) => {
+                    self.law.add_segments(segments.iter().copied(), &local, terms)
+                }
+            };
             return (energy, cone(apex, volume, terms, &self.elements));
         };
         let surface = stencils.apply(&local);
         let mut fine_terms = vec![PlaceTerms::default(); surface.len()];
-        let [energy, volume] = self.law.add_variation(elements, &surface, &mut fine_terms);
+        let first = id(self.control_points.len());
+        let [energy, volume] = match &self.elements {
+            Elements::Triangles(triangles) => {
+                let finer = refined_triangles(triangles, &self.edges_across, first);
+                self.law.add_triangles(finer, &surface, &mut fine_terms)
+            }
+            Elements::Segments(segments) => {
+                let finer = (first..).zip(segments).flat_map(|(middle, [a, b])| [[*a, middle], [middle, *b]]);
+                self.law.add_segments(finer, &surface, &mut fine_terms)
+            }
+        };
         stencils.pull_back(&fine_terms, terms);
-        (energy, cone(apex, volume, &fine_terms, elements))
+        (energy, cone(apex, volume, &fine_terms, &self.elements))
     }
 
     /// Adds the cotangent Laplacian times the tension as the stiffness of each edge.
@@ -192,51 +203,79 @@ impl Patch {
 }
 
 impl Law {
-    /// Adds the terms of the points of a surface, and gives its energy and its volume.
-    fn add_variation(&self, elements: &Elements, points: &[DVec3], terms: &mut [PlaceTerms]) -> [f64; 2] {
-        let tension = self.share * self.tension;
-        let mass_share = if tension == 0.0 { 0.0 } else { self.share / self.mobility };
+    /// Adds the terms of the points of a surface in space, and gives its energy and its volume.
+    fn add_triangles(
+        &self,
+        triangles: impl Iterator<Item = [u32; 3]>,
+        points: &[DVec3],
+        terms: &mut [PlaceTerms],
+    ) -> [f64; 2] {
+        let (tension, mass_share) = self.shares();
         let (mut area, mut volume) = (0.0, 0.0);
-        let at = |point: u32| points[point as usize];
-        match elements {
-            Elements::Triangles(triangles) => {
-                for corners in triangles {
-                    let triangle = Triangle::new(corners.map(at));
-                    let Triangle { normal, doubled_area, .. } = triangle;
-                    let half_pull = if doubled_area > 0.0 {
-                        normal * (0.5 * tension / doubled_area)
-                    } else {
-                        DVec3::ZERO
-                    };
-                    for (corner, of_corner) in corners.iter().zip(triangle.gradients(half_pull)) {
-                        let terms = &mut terms[*corner as usize];
-                        terms.gradient += of_corner;
-                        terms.volume_gradient += triangle.volume_gradient();
-                        terms.mass += mass_share * doubled_area / 6.0;
-                    }
-                    area += 0.5 * doubled_area;
-                    volume += triangle_volume(corners.map(at));
-                }
+        for corners in triangles {
+            let at = corners.map(|corner| points[corner as usize]);
+            let triangle = Triangle::new(at);
+            let Triangle { normal, doubled_area, .. } = triangle;
+            let half_pull =
+                if doubled_area > 0.0 { normal * (0.5 * tension / doubled_area) } else { DVec3::ZERO };
+            for (corner, of_corner) in corners.iter().zip(triangle.gradients(half_pull)) {
+                let terms = &mut terms[*corner as usize];
+                terms.gradient += of_corner;
+                terms.volume_gradient += triangle.volume_gradient();
+                terms.mass += mass_share * doubled_area / 6.0;
             }
-            Elements::Segments(segments) => {
-                for ends in segments {
-                    let [start, end] = ends.map(at);
-                    let along = end - start;
-                    let length = along.length();
-                    let unit = along.normalize_or_zero() * tension;
-                    for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
-                        let terms = &mut terms[*end as usize];
-                        terms.gradient += unit * sign;
-                        terms.volume_gradient += along.cross(DVec3::Z) / 2.0;
-                        terms.mass += 0.5 * mass_share * length.max(f64::MIN_POSITIVE);
-                    }
-                    area += length;
-                    volume += segment_area([start, end]);
-                }
-            }
+            area += 0.5 * doubled_area;
+            volume += triangle_volume(at);
         }
         [tension * area, volume]
     }
+
+    /// The same for lines in the plane.
+    fn add_segments(
+        &self,
+        segments: impl Iterator<Item = [u32; 2]>,
+        points: &[DVec3],
+        terms: &mut [PlaceTerms],
+    ) -> [f64; 2] {
+        let (tension, mass_share) = self.shares();
+        let (mut area, mut volume) = (0.0, 0.0);
+        for ends in segments {
+            let [start, end] = ends.map(|end| points[end as usize]);
+            let along = end - start;
+            let length = along.length();
+            let unit = along.normalize_or_zero() * tension;
+            for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                let terms = &mut terms[*end as usize];
+                terms.gradient += unit * sign;
+                terms.volume_gradient += along.cross(DVec3::Z) / 2.0;
+                terms.mass += 0.5 * mass_share * length.max(f64::MIN_POSITIVE);
+            }
+            area += length;
+            volume += segment_area([start, end]);
+        }
+        [tension * area, volume]
+    }
+
+    /// The tension that counts, and what area counts as mass.
+    fn shares(&self) -> (f64, f64) {
+        let mass_share = if self.tension == 0.0 { 0.0 } else { self.share / self.mobility };
+        (self.share * self.tension, mass_share)
+    }
+}
+
+/// The triangles one subdivision on, given the edges across from the corners of each; points on edges have numbers from `first` on.
+fn refined_triangles(
+    triangles: &[[u32; 3]],
+    edges_across: &[[u32; 3]],
+    first: u32,
+) -> impl Iterator<Item = [u32; 3]> {
+    let with_middles = move |(corners, across): (&[u32; 3], &[u32; 3])| {
+        let [bc, ca, ab] = across.map(|edge| first + edge);
+        (*corners, [ab, bc, ca])
+    };
+    let parents = move || triangles.iter().zip(edges_across).map(with_middles);
+    let corners = parents().flat_map(|([a, b, c], [ab, bc, ca])| [[a, ab, ca], [b, bc, ab], [c, ca, bc]]);
+    corners.chain(parents().map(|(_, [ab, bc, ca])| [ca, ab, bc]))
 }
 
 /// The cone to a surface whose volume, and how it changes with its points, are those from the apex.

@@ -6,9 +6,10 @@ use rayon::prelude::*;
 use subzero::{EdgeId, FaceId};
 use voronoi::Dimension;
 
-use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PlaceTerms, Refinement, index_in};
+use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PlaceTerms, index_in};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::{Grouped, split};
+use crate::mesh::id::id;
 use crate::mesh::volume::Cone;
 use crate::network::tension::in_unit;
 use crate::{Mesh, Network};
@@ -55,23 +56,19 @@ impl Patches {
         largest_cotangent: f64,
     ) -> Self {
         let control_level = &network.levels()[control];
-        let surface_level = network.level(surface);
         let count = network.boundaries().len();
         let mobility_unit = network.mean_mobility();
         let control_elements = BoundaryElements::of_level(control_level, count);
-        let surface_elements = BoundaryElements::of_level(surface_level, count);
         let patches: Vec<Patch> = (0..count)
             .into_par_iter()
             .map(|boundary| {
-                let surface = (surface > control)
-                    .then(|| local_elements(surface_level.elements(), &surface_elements.of(boundary)));
                 let law = Law {
                     tension: in_unit(network.tensions()[boundary], tension_unit),
                     mobility: in_unit(network.mobilities()[boundary], mobility_unit),
                     share: if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 },
                 };
                 let numbers = control_elements.of(boundary);
-                new_patch(&control_level.mesh, &numbers, surface, law)
+                new_patch(&control_level.mesh, &numbers, surface > control, law)
             })
             .collect();
         check_cancelled();
@@ -157,35 +154,48 @@ pub(crate) fn local_elements(all: crate::Elements<'_>, elements: &[u32]) -> (Vec
     (points, elements)
 }
 
-fn new_patch(control: &Mesh, numbers: &[u32], surface: Option<(Vec<u32>, Elements)>, law: Law) -> Patch {
+fn new_patch(control: &Mesh, numbers: &[u32], is_refined: bool, law: Law) -> Patch {
     check_cancelled();
     let (control_points, elements) = local_elements(control.into(), numbers);
-    let (edges, edges_across) = local_edges(control, numbers, &control_points);
-    let refinement = surface.map(|(points, elements)| Refinement {
-        stencils: LocalStencils::new(
-            |point, entries| control.stencil(point, entries),
-            &control_points,
-            &points,
-        ),
-        elements,
+    let all_edges = edges_of(control, numbers);
+    let (edges, edges_across) = local_edges(control, numbers, &all_edges, &control_points);
+    let stencils = is_refined.then(|| {
+        let on_edges = all_edges.iter().map(|edge| id(control.vertex_count()) + edge);
+        let points: Vec<u32> = control_points.iter().copied().chain(on_edges).collect();
+        LocalStencils::new(|point, entries| control.stencil(point, entries), &control_points, &points)
     });
-    Patch { control_points, elements, edges, edges_across, refinement, law }
+    Patch { control_points, elements, edges, edges_across, stencils, law }
 }
 
-/// The edges of some elements, each once, between the given points, and of each triangle those across from its corners.
-fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
+/// The edges of some elements, sorted; in the plane, these themselves.
+fn edges_of(mesh: &Mesh, elements: &[u32]) -> Vec<u32> {
+    match mesh {
+        Mesh::Segments(_) => elements.to_vec(),
+        Mesh::Triangles(mesh) => {
+            let edges = elements.iter().flat_map(|e| mesh.triangle_edges(FaceId(*e)));
+            let mut edges: Vec<u32> = edges.map(|edge| edge.0).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            edges
+        }
+    }
+}
+
+/// The edges of some elements between their own points, and of each triangle those across from its corners.
+fn local_edges(
+    mesh: &Mesh,
+    elements: &[u32],
+    edges: &[u32],
+    points: &[u32],
+) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
     let local = |ends: [u32; 2]| ends.map(|end| index_in(points, end));
     match mesh {
         Mesh::Segments(mesh) => {
             (elements.iter().map(|e| local(mesh.segments()[*e as usize])).collect(), Vec::new())
         }
         Mesh::Triangles(mesh) => {
-            let edges = elements.iter().flat_map(|e| mesh.triangle_edges(FaceId(*e)));
-            let mut edges: Vec<u32> = edges.map(|edge| edge.0).collect();
-            edges.sort_unstable();
-            edges.dedup();
             let across = |element: &u32| {
-                let [ab, bc, ca] = mesh.triangle_edges(FaceId(*element)).map(|edge| index_in(&edges, edge.0));
+                let [ab, bc, ca] = mesh.triangle_edges(FaceId(*element)).map(|edge| index_in(edges, edge.0));
                 [bc, ca, ab]
             };
             let across = elements.iter().map(across).collect();

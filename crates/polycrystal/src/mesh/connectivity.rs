@@ -15,6 +15,14 @@ pub enum Mesh {
 }
 
 impl Mesh {
+    /// Number of vertices.
+    pub(crate) fn vertex_count(&self) -> usize {
+        match self {
+            Self::Triangles(mesh) => mesh.vertex_count(),
+            Self::Segments(mesh) => mesh.vertex_count(),
+        }
+    }
+
     /// The points one level on, which follow from those of this level.
     pub(crate) fn step(&self, points: &[DVec3]) -> Vec<DVec3> {
         match self {

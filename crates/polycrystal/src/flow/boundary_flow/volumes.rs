@@ -20,18 +20,16 @@ const VOLUME_STEPS: usize = 40;
 impl Flow<'_> {
     /// Makes volumes right where that is asked for; gives the points of the finest level.
     pub(crate) fn restored(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
-        match self.volumes {
-            Volumes::Kept => self.restore_volumes(points),
-            Volumes::Free => Ok(self.finest_points(points)),
+        if self.volumes == Volumes::Kept {
+            self.restore_volumes(points)?;
         }
+        Ok(self.finest_points(points))
     }
 
     /// Moves points so that the grains of the finest level have the volumes of their cells.
     ///
     /// Where short edges that are rigid leave some grain no way to change its volume, nothing is rigid.
-    ///
-    /// Gives the points of the finest level.
-    pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+    pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
         let start = points.to_vec();
         let mut attempts = Vec::new();
         match self.restore_with(&self.with_short_edges(&self.copies, points), &start, points) {
@@ -50,7 +48,7 @@ impl Flow<'_> {
         groups: &TiedPoints,
         start: &[DVec3],
         points: &mut [DVec3],
-    ) -> Result<Vec<DVec3>, NetworkError> {
+    ) -> Result<(), NetworkError> {
         // Where volumes are right already, nothing is asked of it.
         let response = LazyCell::new(|| {
             let groups = groups.number();
@@ -74,14 +72,10 @@ impl Flow<'_> {
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
                 gain = (gain / (1.0 - left)).clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN);
             }
-            if relative_error <= VOLUME_RESTORED {
-                return Ok(self.finest_points(points));
-            }
-            if stalled {
-                let surface = self.finest_points(points);
-                if is_rounding(self.network, &missing, &surface) {
-                    return Ok(surface);
-                }
+            let is_right = relative_error <= VOLUME_RESTORED
+                || stalled && is_rounding(self.network, &missing, &self.finest_points(points));
+            if is_right {
+                return Ok(());
             }
             let (groups, response) = &*response;
             // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
