@@ -146,11 +146,11 @@ pub(crate) fn inspect(
     faults.extend(survey.flat.iter().map(|element| Fault::NoArea { element: *element }));
     // Each of these runs for the most part on one thread.
     let of_angles = || AngleStatistics::of(angles(surface, surface.sides, adjacency.non_manifold_edges()));
-    let ((crossing, angles), ((meetings, duplicates), ((closing, is_closed), pieces))) = rayon::join(
+    let ((crossing, angles), ((duplicates, meetings), ((closing, is_closed), pieces))) = rayon::join(
         || rayon::join(|| crossing_elements(surface, adjacency, &boundaries, &survey.boxes), of_angles),
         || {
             rayon::join(
-                || (meetings(surface, &boundaries), duplicate_points(surface.points)),
+                || (duplicate_points(surface.points), meetings(surface, &boundaries)),
                 || (closedness_and_pinches(surface, adjacency), Pieces::new(surface)),
             )
         },

@@ -11,25 +11,25 @@ use std::ops::{AddAssign, Mul};
 use glam::DVec3;
 use voronoi::Dimension;
 
+use crate::energy::local_elements::ElementsPart;
+use crate::energy::stencils::Stencils;
 use crate::energy::triangle::Triangle;
 use crate::mesh::id::id;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 
 /// A boundary's control mesh, and its surface in terms of the control points.
-#[derive(Debug)]
-pub(crate) struct Patch {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Patch<'a> {
     /// The control points that the boundary depends on; all other fields count them from 0.
-    pub(crate) control_points: Vec<u32>,
+    pub(crate) control_points: &'a [u32],
     /// The elements of the control mesh. Its points and edges come in the order of their ids, so points of the next level do, too: first the control
     /// points, then those on the edges.
-    pub(crate) elements: Elements,
-    /// The edges of the control mesh.
-    pub(crate) edges: Vec<[u32; 2]>,
-    /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
-    pub(crate) edges_across: Vec<[u32; 3]>,
+    pub(crate) elements: ElementsPart<'a>,
+    /// Of each triangle of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
+    pub(crate) edges_across: &'a [[u32; 3]],
     /// How the points of the surface follow, where it is that of the next level.
-    pub(crate) stencils: Option<LocalStencils>,
-    pub(crate) law: Law,
+    pub(crate) stencils: Option<Stencils<'a>>,
+    pub(crate) law: &'a Law,
 }
 
 /// How a boundary pulls and moves.
@@ -41,67 +41,6 @@ pub(crate) struct Law {
     pub(crate) mobility: f64,
     /// 1, or 1/2 for a boundary that a periodic network holds twice.
     pub(crate) share: f64,
-}
-
-/// Triangles or segments, as numbers of points.
-#[derive(Debug)]
-pub(crate) enum Elements {
-    Triangles(Vec<[u32; 3]>),
-    Segments(Vec<[u32; 2]>),
-}
-
-/// How finer points of one boundary follow from its coarser ones.
-#[derive(Debug)]
-pub(crate) struct LocalStencils {
-    /// Finer point f is the mean of the coarser points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
-    starts: Vec<u32>,
-    ids: Vec<u32>,
-    /// As numbers of `values`: there are few different ones.
-    weights: Vec<u16>,
-    values: Vec<f64>,
-}
-
-impl LocalStencils {
-    /// Those of some points; `stencil` puts the coarser points that one depends on in place of what it is given, each with its weight, and `coarser` are
-    /// all of them, sorted.
-    pub(crate) fn new(stencil: impl Fn(u32, &mut Vec<(u32, f64)>), coarser: &[u32], finer: &[u32]) -> Self {
-        let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new(), values: Vec::new() };
-        let mut entries = Vec::new();
-        for point in finer {
-            stencil(*point, &mut entries);
-            for (point, weight) in &entries {
-                let known = local.values.iter().position(|value| value == weight);
-                let number = known.unwrap_or_else(|| {
-                    local.values.push(*weight);
-                    local.values.len() - 1
-                });
-                local.ids.push(index_in(coarser, *point));
-                local.weights.push(u16::try_from(number).expect("a weight belongs to a valence"));
-            }
-            local.starts.push(id(local.ids.len()));
-        }
-        local.ids.shrink_to_fit();
-        local.weights.shrink_to_fit();
-        local
-    }
-
-    fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.starts[point] as usize..self.starts[point + 1] as usize;
-        let weights = self.weights[range.clone()].iter().map(|number| self.values[*number as usize]);
-        self.ids[range].iter().map(|id| *id as usize).zip(weights)
-    }
-
-    pub(crate) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
-        let point = |f: usize| self.row(f).map(|(c, weight)| points[c] * weight).sum();
-        (0..self.starts.len() - 1).map(point).collect()
-    }
-
-    /// Adds what is at finer points, forces or masses, to what is at coarser ones.
-    pub(crate) fn pull_back<T: Copy + Mul<f64, Output = T> + AddAssign>(&self, fine: &[T], coarse: &mut [T]) {
-        for (f, at_fine) in fine.iter().enumerate() {
-            self.row(f).for_each(|(c, weight)| coarse[c] += *at_fine * weight);
-        }
-    }
 }
 
 /// What a boundary brings to a step at one of its points.
@@ -135,7 +74,7 @@ impl Mul<f64> for PlaceTerms {
     }
 }
 
-impl Patch {
+impl Patch<'_> {
     /// Adds the terms at the given control points, and the stiffness of each edge; gives area times tension, and the cone to the surface.
     pub(crate) fn add_terms(
         &self,
@@ -148,32 +87,32 @@ impl Patch {
         let apex = points[self.control_points[0] as usize];
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
         self.add_stiffness(&local, largest_cotangent, stiffness);
-        let Some(stencils) = &self.stencils else {
-            let [energy, volume] = match &self.elements {
-                Elements::Triangles(triangles) => {
+        let Some(stencils) = self.stencils else {
+            let [energy, volume] = match self.elements {
+                ElementsPart::Triangles(triangles) => {
                     self.law.add_triangles(triangles.iter().copied(), &local, terms)
                 }
-                Elements::Segments(segments) => {
+                ElementsPart::Segments(segments) => {
                     self.law.add_segments(segments.iter().copied(), &local, terms)
                 }
             };
-            return (energy, cone(apex, volume, terms, &self.elements));
+            return (energy, cone(apex, volume, terms, self.elements));
         };
         let surface = stencils.apply(&local);
         let mut fine_terms = vec![PlaceTerms::default(); surface.len()];
         let first = id(self.control_points.len());
-        let [energy, volume] = match &self.elements {
-            Elements::Triangles(triangles) => {
-                let finer = refined_triangles(triangles, &self.edges_across, first);
+        let [energy, volume] = match self.elements {
+            ElementsPart::Triangles(triangles) => {
+                let finer = refined_triangles(triangles, self.edges_across, first);
                 self.law.add_triangles(finer, &surface, &mut fine_terms)
             }
-            Elements::Segments(segments) => {
+            ElementsPart::Segments(segments) => {
                 let finer = (first..).zip(segments).flat_map(|(middle, [a, b])| [[*a, middle], [middle, *b]]);
                 self.law.add_segments(finer, &surface, &mut fine_terms)
             }
         };
         stencils.pull_back(&fine_terms, terms);
-        (energy, cone(apex, volume, &fine_terms, &self.elements))
+        (energy, cone(apex, volume, &fine_terms, self.elements))
     }
 
     /// Adds the cotangent Laplacian times the tension as the stiffness of each edge.
@@ -183,16 +122,16 @@ impl Patch {
             return;
         }
         let at = |point: u32| local[point as usize];
-        match &self.elements {
-            Elements::Triangles(triangles) => {
-                for (corners, across) in triangles.iter().zip(&self.edges_across) {
+        match self.elements {
+            ElementsPart::Triangles(triangles) => {
+                for (corners, across) in triangles.iter().zip(self.edges_across) {
                     let cotangents = Triangle::new(corners.map(at)).cotangents(largest_cotangent);
                     for (edge, cotangent) in across.iter().zip(cotangents) {
                         stiffness[*edge as usize] += 0.5 * tension * cotangent;
                     }
                 }
             }
-            Elements::Segments(segments) => {
+            ElementsPart::Segments(segments) => {
                 for (ends, stiffness) in segments.iter().zip(stiffness) {
                     let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
                     *stiffness += tension / length;
@@ -279,17 +218,11 @@ fn refined_triangles(
 }
 
 /// The cone to a surface whose volume, and how it changes with its points, are those from the apex.
-fn cone(apex: DVec3, volume: f64, terms: &[PlaceTerms], elements: &Elements) -> Cone {
+fn cone(apex: DVec3, volume: f64, terms: &[PlaceTerms], elements: ElementsPart<'_>) -> Cone {
     let dimension = match elements {
-        Elements::Triangles(_) => Dimension::Three,
-        Elements::Segments(_) => Dimension::Two,
+        ElementsPart::Triangles(_) => Dimension::Three,
+        ElementsPart::Segments(_) => Dimension::Two,
     };
     // All points that move as one sweep along the sum of normals.
     Cone::new(apex, volume, terms.iter().map(|terms| terms.volume_gradient).sum(), dimension)
-}
-
-/// The place of an id in a sorted list that holds it.
-pub(crate) fn index_in(sorted: &[u32], id: u32) -> u32 {
-    let index = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
-    u32::try_from(index).expect("an index in a list of ids fits an id")
 }

@@ -7,7 +7,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use subzero::VertexRule;
 
-use crate::energy::patch::{Elements, Patch};
+use crate::energy::local_elements::ElementsPart;
+use crate::energy::patch::Patch;
 use crate::energy::patches::Patches;
 use crate::{Mesh, Network};
 
@@ -23,21 +24,21 @@ pub(crate) fn tangential_moves(
     let level = &network.levels()[level];
     let Mesh::Triangles(mesh) = &level.mesh else { return vec![DVec3::ZERO; points.len()] };
     let mut moves = vec![DVec3::ZERO; points.len()];
-    let of_patch = |patch: &Patch| {
-        let ways = ways_to_middle(patch, points).into_iter().zip(&patch.control_points);
+    let of_patch = |patch: Patch<'_>| {
+        let ways = ways_to_middle(patch, points).into_iter().zip(patch.control_points);
         let inside = ways.filter(|(_, point)| mesh.vertex_rule(**point) == VertexRule::Smooth);
         let moves = inside
             .map(|(way, point)| (*point, network.freedom(level.walls[*point as usize]).project(way * rate)));
         moves.collect::<Vec<(u32, DVec3)>>()
     };
-    let of_patches: Vec<Vec<(u32, DVec3)>> = patches.patches.par_iter().map(of_patch).collect();
+    let of_patches: Vec<Vec<(u32, DVec3)>> = patches.patches().map(of_patch).collect();
     of_patches.into_iter().flatten().for_each(|(point, by)| moves[point as usize] = by);
     moves
 }
 
 /// The way of each point of a patch to the centre of its triangles around, within the tangent plane; there are none in the plane.
-fn ways_to_middle(patch: &Patch, points: &[DVec3]) -> Vec<DVec3> {
-    let Elements::Triangles(triangles) = &patch.elements else { return Vec::new() };
+fn ways_to_middle(patch: Patch<'_>, points: &[DVec3]) -> Vec<DVec3> {
+    let ElementsPart::Triangles(triangles) = patch.elements else { return Vec::new() };
     let places: Vec<DVec3> = patch.control_points.iter().map(|point| points[*point as usize]).collect();
     let mut ways = vec![DVec3::ZERO; places.len()];
     let (mut normals, mut weights) = (ways.clone(), vec![0.0; places.len()]);

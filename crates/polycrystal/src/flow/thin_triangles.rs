@@ -8,8 +8,8 @@
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
 
-use crate::energy::patch::{Elements, LocalStencils, index_in};
-use crate::energy::patches::local_elements;
+use crate::energy::local_elements::{LocalElements, index_in, local_elements};
+use crate::energy::stencils::LocalStencils;
 use crate::mesh::fold::LARGEST_FOLD;
 use crate::mesh::level::LevelMesh;
 use crate::mesh::triangle_quality::squared_sine;
@@ -106,7 +106,9 @@ impl Room {
             elements = elements.iter().flat_map(children).map(|triangle| triangle.0).collect();
             let (points, triangles) = local_triangles(network.level(finer).elements(), &elements)?;
             let stencil = |point, entries: &mut Vec<_>| network.stencil(finer, point, entries);
-            room.stencils.push(LocalStencils::new(stencil, &coarser, &points));
+            let mut stencils = LocalStencils::new();
+            stencils.add(stencil, &coarser, points.iter().copied());
+            room.stencils.push(stencils);
             (coarser, room.triangles) = (points, triangles);
         }
         room.face(&elements, network.finest());
@@ -175,7 +177,7 @@ impl Room {
     fn surfaces(&self, points: &[DVec3]) -> Vec<Vec<DVec3>> {
         let mut surfaces = vec![points.to_vec()];
         for stencils in &self.stencils {
-            surfaces.push(stencils.apply(&surfaces[surfaces.len() - 1]));
+            surfaces.push(stencils.all().apply(&surfaces[surfaces.len() - 1]));
         }
         surfaces
     }
@@ -214,7 +216,7 @@ impl Room {
         for (stencils, coarser) in self.stencils.iter().zip(&surfaces).rev() {
             for field in [&mut descent, &mut stiffness] {
                 let mut pulled = vec![DVec3::ZERO; coarser.len()];
-                stencils.pull_back(field, &mut pulled);
+                stencils.all().pull_back(field, &mut pulled);
                 *field = pulled;
             }
         }
@@ -244,8 +246,8 @@ struct Distortion {
 /// Some elements of a mesh in terms of their own points, and these points, sorted.
 fn local_triangles(all: crate::Elements<'_>, elements: &[u32]) -> Option<(Vec<u32>, Vec<[u32; 3]>)> {
     match local_elements(all, elements) {
-        (points, Elements::Triangles(triangles)) => Some((points, triangles)),
-        (_, Elements::Segments(_)) => None,
+        (points, LocalElements::Triangles(triangles)) => Some((points, triangles)),
+        (_, LocalElements::Segments(_)) => None,
     }
 }
 

@@ -110,7 +110,7 @@ impl Flow<'_> {
         for triangle in thin {
             let boundary = self.network.finest().boundary(*triangle);
             let group = *group_of.entry(boundary).or_insert_with(|| {
-                let own = self.patches.patches[boundary.index()].control_points.iter();
+                let own = self.patches.patch(boundary.index()).control_points.iter();
                 let inside = own.filter(|point| mesh.vertex_rule(**point) == VertexRule::Smooth);
                 groups.push(inside.copied().collect());
                 groups.len() - 1
