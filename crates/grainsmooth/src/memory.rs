@@ -4,10 +4,10 @@ use std::path::Path;
 
 use sysinfo::{MemoryRefreshKind, System};
 
-/// Bytes that a run in space holds at its peak, which is in one of two stages. Fitted to peak resident memory, in millions of bytes and brackets what
-/// comes of it: 200 grains took 37 (43), 91 (79) and 223 (216) at levels 1, 3 and 4, 500 grains 195 (173) at level 3, 1000 grains 146 (141) and 259 (280) at
-/// levels 1 and 2, 2000 grains 94 (93), 268 (268), 526 (552) and 630 (653) at levels 0 to 3, 20 000 grains 826 (781), 2612 (2600) and 6031 (6580) at levels 0, 1 and 3,
-/// 100 000 grains 3650 (3873) at level 0.
+/// Bytes that a run in space holds at its peak. Fitted to peak resident memory, in millions of bytes and brackets what comes of it: 200 grains took 42 (43),
+/// 79 (89) and 168 (175) at levels 1, 3 and 4, 500 grains 167 (170) at level 3, 1000 grains 147 (141) and 235 (237) at levels 1 and 2, 2000 grains 92 (93),
+/// 255 (268), 475 (463) and 432 (428) at levels 0 to 3, 20 000 grains 756 (781), 2437 (2592) and 3330 (3820) at levels 0, 1 and 3, 100 000 grains 3650 (3873) at
+/// level 0. To equilibrium, where level 2 moves too, grains take two to four times as much.
 ///
 /// The program itself ...
 const PROGRAM: u128 = 20_000_000;
@@ -15,25 +15,29 @@ const PROGRAM: u128 = 20_000_000;
 /// ... in relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
 const RELAXED_PER_CONTROL_EDGE: u128 = 420;
 const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 850;
-const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 1700;
+const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 1420;
 
-/// ... for each triangle of level 1, where that carries energy, or of level 2 ...
+/// ... and for each triangle of level 1, where that carries energy, or of level 2.
 const RELAXED_PER_TRIANGLE_MOVED: u128 = 190;
-const RELAXED_PER_TRIANGLE_REFINED: u128 = 112;
+const RELAXED_PER_TRIANGLE_REFINED: u128 = 94;
 const ENERGY_LEVEL: u32 = 2;
 
-/// ... and for each triangle of a last level beyond: its points.
-const RELAXED_PER_LAST_TRIANGLE: u128 = 12;
-
-/// Where nothing moves, through level 2: for each edge of the control mesh, and each triangle of the last level if that is another. 5000 grains took 133 (123),
-/// 286 (277) and 757 (740) at levels 0 to 2, 20 000 grains 465 (439), 983 (1067) and 2854 (2951), 100 000 grains 1910 (2148) at level 0.
+/// Where nothing moves, through level 2: for each edge of the control mesh, and each triangle of the last level if that is another. 5000 grains took 134 (109),
+/// 268 (242) and 689 (642) at levels 0 to 2, 20 000 grains 846 (926) at level 1, 100 000 grains 1910 (2148) at level 0.
 const STILL_PER_CONTROL_EDGE: u128 = 200;
 const STILL_PER_TRIANGLE: u128 = 100;
 
-/// In the certificate and in writing, which take more from level 3 on, for each edge of the control mesh and each triangle of the last level: its points and their arrays, and the levels
-/// before; the last level itself follows from these.
-const WRITTEN_PER_CONTROL_EDGE: u128 = 600;
-const WRITTEN_PER_TRIANGLE: u128 = 60;
+/// From level 3 on, the certificate takes the most: for each edge of the control mesh the levels that are held, with those of relaxation where points move (still, 5000
+/// grains took 717 (832) at level 3) ...
+const CERTIFIED_PER_CONTROL_EDGE: u128 = 870;
+const CERTIFIED_PER_CONTROL_EDGE_STILL: u128 = 500;
+
+/// ... for each triangle of the last level its points and what is known of them ...
+const CERTIFIED_PER_TRIANGLE: u128 = 25;
+
+/// ... and what is searched for crossings at a time, of each triangle and so many.
+const SEARCHED_PER_TRIANGLE: u128 = 45;
+const SEARCHED_TRIANGLES: u128 = 1_400_000;
 
 /// Bytes that a run in the plane holds at its peak for each point and segment of its last level, and each segment of the first. Up to 5 % above peak resident
 /// memory: 20 000 grains took 1862 MB at level 6, and in equilibrium at level 3 1196 MB, 2000 grains 128 MB.
@@ -213,25 +217,27 @@ impl ControlMesh {
                 (edges, of_control),
             ]);
         }
-        if self.is_still && levels <= ENERGY_LEVEL {
-            let refined = if levels == 0 { 0 } else { size.triangles };
-            let parts = [(edges, STILL_PER_CONTROL_EDGE), (refined, STILL_PER_TRIANGLE)];
-            return sum(&parts).saturating_add(PROGRAM);
-        }
-        let (of_control, of_triangle) = match levels {
-            0 => (RELAXED_PER_CONTROL_EDGE, 0),
-            1 => (RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE_MOVED),
-            _ => (RELAXED_PER_CONTROL_EDGE_REFINED, RELAXED_PER_TRIANGLE_REFINED),
+        let parts: &[(u128, u128)] = match levels {
+            0 if self.is_still => &[(edges, STILL_PER_CONTROL_EDGE)],
+            0 => &[(edges, RELAXED_PER_CONTROL_EDGE)],
+            1..=ENERGY_LEVEL if self.is_still => {
+                &[(edges, STILL_PER_CONTROL_EDGE), (size.triangles, STILL_PER_TRIANGLE)]
+            }
+            1 => &[(edges, RELAXED_PER_CONTROL_EDGE_MOVED), (size.triangles, RELAXED_PER_TRIANGLE_MOVED)],
+            ENERGY_LEVEL => {
+                &[(edges, RELAXED_PER_CONTROL_EDGE_REFINED), (size.triangles, RELAXED_PER_TRIANGLE_REFINED)]
+            }
+            _ => {
+                let of_control =
+                    if self.is_still { CERTIFIED_PER_CONTROL_EDGE_STILL } else { CERTIFIED_PER_CONTROL_EDGE };
+                &[
+                    (edges, of_control),
+                    (size.triangles, CERTIFIED_PER_TRIANGLE),
+                    (size.triangles.min(SEARCHED_TRIANGLES), SEARCHED_PER_TRIANGLE),
+                ]
+            }
         };
-        let carrying = self.after(levels.min(ENERGY_LEVEL));
-        let of_last = if levels > ENERGY_LEVEL { RELAXED_PER_LAST_TRIANGLE } else { 0 };
-        let relaxed =
-            sum(&[(edges, of_control), (carrying.triangles, of_triangle), (size.triangles, of_last)]);
-        let written = match levels {
-            0..=ENERGY_LEVEL => 0,
-            _ => sum(&[(edges, WRITTEN_PER_CONTROL_EDGE), (size.triangles, WRITTEN_PER_TRIANGLE)]),
-        };
-        relaxed.max(written).saturating_add(PROGRAM)
+        sum(parts).saturating_add(PROGRAM)
     }
 }
 
@@ -459,15 +465,15 @@ mod tests {
         let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
         assert_eq!(
             message(9, 8_000_000_000),
-            "9 levels would take 220.2 GB of memory and 8.0 GB are available; 6 levels would fit"
+            "9 levels would take 91.9 GB of memory and 8.0 GB are available; 7 levels would fit"
         );
         assert_eq!(
             message(200, 8_000_000_000),
-            "200 levels would take over 1000 EB of memory and 8.0 GB are available; 6 levels would fit"
+            "200 levels would take over 1000 EB of memory and 8.0 GB are available; 7 levels would fit"
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 89.8 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
+            "3 levels would take 100.1 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),

@@ -184,14 +184,18 @@ impl Search<'_> {
 /// The pairs of boundaries that have an edge in common; sorted, the lower first.
 fn pairs_at_lines(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
+    // The edges of a line follow each other for the most part, and have the same boundaries.
+    let (mut boundaries, mut last) = (Vec::new(), Vec::new());
     for at in adjacency.non_manifold_edges() {
-        for (index, first) in at.iter().enumerate() {
-            for second in &at[index + 1..] {
-                let [a, b] = [first, second].map(|at| surface.boundary(at.element).0);
-                if a != b {
-                    pairs.push([a.min(b), a.max(b)]);
-                }
+        boundaries.clear();
+        boundaries.extend(at.iter().map(|at| surface.boundary(at.element).0));
+        boundaries.sort_unstable();
+        boundaries.dedup();
+        if boundaries != last {
+            for (index, a) in boundaries.iter().enumerate() {
+                pairs.extend(boundaries[index + 1..].iter().map(|b| [*a, *b]));
             }
+            std::mem::swap(&mut boundaries, &mut last);
         }
     }
     pairs.par_sort_unstable();

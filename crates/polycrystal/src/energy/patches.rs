@@ -136,14 +136,11 @@ impl Patches {
     pub(crate) fn patch(&self, boundary: usize) -> Patch<'_> {
         let range = |firsts: &[usize]| firsts[boundary]..firsts[boundary + 1];
         let (places, elements) = (range(&self.first_places), range(&self.first_elements));
-        let edges = range(&self.first_edges);
-        // The next level has a point for each control point, and one for each edge.
-        let finer = places.start + edges.start..places.end + edges.end;
         Patch {
             control_points: &self.control_points[places],
             elements: self.elements.part(elements.clone()),
             edges_across: self.edges_across.get(elements).unwrap_or_default(),
-            stencils: self.stencils.as_ref().map(|stencils| stencils.of(finer)),
+            stencils: self.stencils.as_ref().map(|stencils| stencils.of(boundary)),
             law: &self.laws[boundary],
         }
     }

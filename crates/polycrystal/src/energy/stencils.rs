@@ -1,27 +1,27 @@
 //! How finer points of boundaries follow from their coarser ones.
 
-use std::ops::{AddAssign, Mul, Range};
+use std::ops::{AddAssign, Mul};
 
 use glam::DVec3;
 
 use crate::energy::local_elements::index_in;
-use crate::mesh::id::id;
 
 /// Those of several boundaries, one after the other. In each, finer and coarser points are counted from 0.
 #[derive(Debug)]
 pub(crate) struct LocalStencils {
-    /// Finer point f is the mean of the coarser points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
-    starts: Vec<u32>,
+    /// The coarser points of which each finer one is the mean.
     ids: Vec<u32>,
-    /// As numbers of `values`: there are few different ones.
-    weights: Vec<u16>,
-    values: Vec<f64>,
+    /// Of each finer point, the number of its weights: there are few different ones.
+    row_of: Vec<u16>,
+    rows: Vec<Vec<f64>>,
+    /// Where the ids and the finer points of each boundary start, and the ends.
+    starts: Vec<[usize; 2]>,
 }
 
 impl LocalStencils {
     /// None yet.
     pub(crate) fn new() -> Self {
-        Self { starts: vec![0], ids: Vec::new(), weights: Vec::new(), values: Vec::new() }
+        Self { ids: Vec::new(), row_of: Vec::new(), rows: Vec::new(), starts: vec![[0; 2]] }
     }
 
     /// Adds those of a boundary. `stencil` puts the coarser points that a finer one depends on in place of what it is given, each with its weight;
@@ -35,69 +35,69 @@ impl LocalStencils {
         let mut entries = Vec::new();
         for point in finer {
             stencil(point, &mut entries);
-            for (point, weight) in &entries {
-                let number = self.number_of(*weight);
-                self.ids.push(index_in(coarser, *point));
-                self.weights.push(number);
-            }
-            self.starts.push(id(self.ids.len()));
+            self.ids.extend(entries.iter().map(|(point, _)| index_in(coarser, *point)));
+            let row = self.number_of(entries.iter().map(|(_, weight)| *weight));
+            self.row_of.push(row);
         }
+        self.starts.push([self.ids.len(), self.row_of.len()]);
     }
 
     /// Adds those of other boundaries.
     pub(crate) fn append(&mut self, others: &Self) {
-        let first = id(self.ids.len());
-        let numbers: Vec<u16> = others.values.iter().map(|value| self.number_of(*value)).collect();
-        self.starts.extend(others.starts[1..].iter().map(|start| first + start));
+        let firsts = [self.ids.len(), self.row_of.len()];
+        let rows: Vec<u16> = others.rows.iter().map(|row| self.number_of(row.iter().copied())).collect();
         self.ids.extend_from_slice(&others.ids);
-        self.weights.extend(others.weights.iter().map(|weight| numbers[usize::from(*weight)]));
+        self.row_of.extend(others.row_of.iter().map(|row| rows[usize::from(*row)]));
+        let starts = others.starts[1..].iter();
+        self.starts.extend(starts.map(|starts| [firsts[0] + starts[0], firsts[1] + starts[1]]));
     }
 
-    fn number_of(&mut self, weight: f64) -> u16 {
-        let known = self.values.iter().position(|value| *value == weight);
+    /// The number of some weights, which are known from then on.
+    fn number_of(&mut self, weights: impl Iterator<Item = f64> + Clone) -> u16 {
+        let known = self.rows.iter().position(|row| row.iter().copied().eq(weights.clone()));
         let number = known.unwrap_or_else(|| {
-            self.values.push(weight);
-            self.values.len() - 1
+            self.rows.push(weights.collect());
+            self.rows.len() - 1
         });
-        u16::try_from(number).expect("a weight belongs to a valence")
+        u16::try_from(number).expect("weights belong to a valence")
     }
 
-    /// Those of some finer points: all of a boundary.
-    pub(crate) fn of(&self, finer: Range<usize>) -> Stencils<'_> {
-        Stencils { starts: &self.starts[finer.start..=finer.end], all: self }
-    }
-
-    /// Those of all finer points, which are those of one boundary.
-    pub(crate) fn all(&self) -> Stencils<'_> {
-        self.of(0..self.starts.len() - 1)
+    /// Those of a boundary.
+    pub(crate) fn of(&self, boundary: usize) -> Stencils<'_> {
+        let [[first_id, first], [end_of_ids, end]] = [self.starts[boundary], self.starts[boundary + 1]];
+        Stencils { ids: &self.ids[first_id..end_of_ids], row_of: &self.row_of[first..end], rows: &self.rows }
     }
 }
 
-/// The stencils of a boundary.
+/// The stencils of a boundary, as of [`LocalStencils`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stencils<'a> {
-    starts: &'a [u32],
-    all: &'a LocalStencils,
+    ids: &'a [u32],
+    row_of: &'a [u16],
+    rows: &'a [Vec<f64>],
 }
 
 impl Stencils<'_> {
-    fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
-        let LocalStencils { ids, weights, values, .. } = self.all;
-        let range = self.starts[point] as usize..self.starts[point + 1] as usize;
-        let weights = weights[range.clone()].iter().map(|number| values[usize::from(*number)]);
-        ids[range].iter().map(|id| *id as usize).zip(weights)
+    /// Of each finer point the coarser ones and their weights.
+    fn rows(self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
+        let Self { ids: mut rest, row_of, rows } = self;
+        row_of.iter().map(move |row| {
+            let weights = rows[usize::from(*row)].as_slice();
+            let own;
+            (own, rest) = rest.split_at(weights.len());
+            own.iter().map(|id| *id as usize).zip(weights.iter().copied())
+        })
     }
 
     /// The finer points.
-    pub(crate) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
-        let point = |f: usize| self.row(f).map(|(c, weight)| points[c] * weight).sum();
-        (0..self.starts.len() - 1).map(point).collect()
+    pub(crate) fn apply(self, points: &[DVec3]) -> Vec<DVec3> {
+        self.rows().map(|row| row.map(|(c, weight)| points[c] * weight).sum()).collect()
     }
 
     /// Adds what is at finer points, forces or masses, to what is at coarser ones.
-    pub(crate) fn pull_back<T: Copy + Mul<f64, Output = T> + AddAssign>(&self, fine: &[T], coarse: &mut [T]) {
-        for (f, at_fine) in fine.iter().enumerate() {
-            self.row(f).for_each(|(c, weight)| coarse[c] += *at_fine * weight);
+    pub(crate) fn pull_back<T: Copy + Mul<f64, Output = T> + AddAssign>(self, fine: &[T], coarse: &mut [T]) {
+        for (row, at_fine) in self.rows().zip(fine) {
+            row.for_each(|(c, weight)| coarse[c] += *at_fine * weight);
         }
     }
 }

@@ -177,7 +177,7 @@ impl Room {
     fn surfaces(&self, points: &[DVec3]) -> Vec<Vec<DVec3>> {
         let mut surfaces = vec![points.to_vec()];
         for stencils in &self.stencils {
-            surfaces.push(stencils.all().apply(&surfaces[surfaces.len() - 1]));
+            surfaces.push(stencils.of(0).apply(&surfaces[surfaces.len() - 1]));
         }
         surfaces
     }
@@ -216,7 +216,7 @@ impl Room {
         for (stencils, coarser) in self.stencils.iter().zip(&surfaces).rev() {
             for field in [&mut descent, &mut stiffness] {
                 let mut pulled = vec![DVec3::ZERO; coarser.len()];
-                stencils.all().pull_back(field, &mut pulled);
+                stencils.of(0).pull_back(field, &mut pulled);
                 *field = pulled;
             }
         }
