@@ -21,7 +21,7 @@ fn main() -> Result<(), grainsmooth::Error> {
 
 /// Largest distance of a point from the mean plane of its boundary.
 fn largest_bulge(polycrystal: &Polycrystal) -> f64 {
-    let level = polycrystal.network.finest().held();
+    let level = polycrystal.network.finest_level();
     let Mesh::Triangles(mesh) = &level.mesh else { return 0.0 };
     let mut boundaries = vec![Vec::new(); polycrystal.network.boundaries().len()];
     for (triangle, BoundaryId(boundary)) in mesh.triangles().iter().zip(&level.boundary_of) {
