@@ -244,29 +244,16 @@ fn on_crease<P: Point>(vertex: P, [a, b]: [P; 2]) -> P {
 mod tests {
     use glam::DVec3;
 
+    use crate::loop_step::tests::example;
     use crate::{Crease, FaceId, Features, TriangleMesh};
 
-    /// An octahedron with a crease that ends, a third triangle on an edge, a corner, and a fan of twenty.
+    /// The octahedron has a crease, which begins at a smooth vertex and ends at a corner.
     #[test]
     fn points_beyond_are_those_of_the_refined_mesh() {
-        let mut triangles: Vec<[u32; 3]> = vec![
-            [0, 1, 2],
-            [0, 2, 3],
-            [0, 3, 4],
-            [0, 4, 1],
-            [5, 2, 1],
-            [5, 3, 2],
-            [5, 4, 3],
-            [5, 1, 4],
-            [0, 1, 6],
-        ];
-        triangles.extend((0..20).map(|k| [7, 8 + k, 8 + (k + 1) % 20]));
+        let (triangles, mut points) = example();
         let creases = [Crease::infinite([2, 3]), Crease::infinite([3, 4])];
         let features = Features { creases: &creases, corners: &[4], ..Features::default() };
         let mut mesh = TriangleMesh::new(28, triangles, &features).unwrap();
-        let mut points: Vec<DVec3> = (0..28)
-            .map(|k| DVec3::new(f64::from(k).sin(), (1.3 * f64::from(k)).cos(), 0.1 * f64::from(k)))
-            .collect();
         for _ in 0..3 {
             let finer = mesh.refine_connectivity().unwrap();
             let given = mesh.loop_step(&points);

@@ -77,14 +77,13 @@ fn sum<P: Point>(points: &[P], entries: impl Iterator<Item = (u32, f64)>) -> P {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use glam::DVec3;
 
     use crate::{Crease, Features, TriangleMesh};
 
-    /// An octahedron with a crease that ends, one that is half sharp, a third triangle on an edge, and a fan of twenty.
-    #[test]
-    fn a_step_is_what_the_table_makes_bit_for_bit() {
+    /// The triangles and 28 points of an octahedron with a third triangle on an edge, and of a fan of twenty.
+    pub(crate) fn example() -> (Vec<[u32; 3]>, Vec<DVec3>) {
         let mut triangles: Vec<[u32; 3]> = vec![
             [0, 1, 2],
             [0, 2, 3],
@@ -97,13 +96,20 @@ mod tests {
             [0, 1, 6],
         ];
         triangles.extend((0..20).map(|k| [7, 8 + k, 8 + (k + 1) % 20]));
+        let points = (0..28)
+            .map(|k| DVec3::new(f64::from(k).sin(), (1.3 * f64::from(k)).cos(), 0.1 * f64::from(k)))
+            .collect();
+        (triangles, points)
+    }
+
+    /// Of the octahedron, one crease ends, and one is half sharp.
+    #[test]
+    fn a_step_is_what_the_table_makes_bit_for_bit() {
+        let (triangles, mut points) = example();
         let crease = |ends, sharpness| Crease { ends, sharpness };
         let features =
             Features { creases: &[crease([2, 3], 0.7), crease([3, 4], 5.0)], ..Features::default() };
         let mut mesh = TriangleMesh::new(28, triangles, &features).unwrap();
-        let mut points: Vec<DVec3> = (0..28)
-            .map(|k| DVec3::new(f64::from(k).sin(), (1.3 * f64::from(k)).cos(), 0.1 * f64::from(k)))
-            .collect();
         for _ in 0..3 {
             let refinement = mesh.loop_refine().unwrap();
             let refined = refinement.stencils.apply(&points);

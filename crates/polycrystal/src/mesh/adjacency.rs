@@ -134,10 +134,8 @@ impl<'a> Adjacency<'a> {
     /// The adjacency of what follows from a mesh whose triangles have these boundaries.
     fn of_mesh(mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId]) -> Self {
         let of_mesh = incidences_of_mesh(mesh.mesh(), boundary_of);
-        let mut incidences = (1..=mesh.levels()).fold(of_mesh, |incidences, levels| {
-            let finer = mesh.at(levels);
-            refined_incidences(finer, &incidences)
-        });
+        let mut incidences = (1..=mesh.levels())
+            .fold(of_mesh, |incidences, levels| refined_incidences(mesh.at(levels), &incidences));
         incidences.par_sort_unstable();
         Self { inner: Inner::OfMesh { mesh, boundary_of }, incidences }
     }

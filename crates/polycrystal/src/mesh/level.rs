@@ -136,12 +136,11 @@ impl<'a> LevelView<'a> {
     pub fn walls(self, vertex: usize, sets: &WallSets) -> WallSet {
         match self {
             Self::Refined(level) if vertex >= level.held.vertex_count() => {
-                if !level.born(vertex).node_type.is_outer() {
-                    return WallSet::EMPTY;
-                }
-                let (parents, edge) = level.birth(vertex);
-                let [a, b] = parents.edge(edge).map(|end| self.walls(end as usize, sets));
-                sets.intersection(a, b)
+                let of_ends = || {
+                    let (parents, edge) = level.birth(vertex);
+                    parents.edge(edge).map(|end| self.walls(end as usize, sets))
+                };
+                walls_between(of_ends, &level.born(vertex), sets)
             }
             _ => self.held().walls[vertex],
         }
@@ -224,13 +223,13 @@ impl<'a> RefinedLevel<'a> {
     }
 }
 
-/// The walls of a vertex that is born between two others, given what meets there. A triangle inside may have two corners on a wall, where lines
+/// The walls of a vertex that is born between two others, given theirs and what meets there. A triangle inside may have two corners on a wall, where lines
 /// are curved: the edge between these is not on it.
-fn walls_between(level: &Level, ends: [u32; 2], born: &Meeting, sets: &WallSets) -> WallSet {
+fn walls_between(of_ends: impl FnOnce() -> [WallSet; 2], born: &Meeting, sets: &WallSets) -> WallSet {
     if !born.node_type.is_outer() {
         return WallSet::EMPTY;
     }
-    let [a, b] = ends.map(|end| level.walls[end as usize]);
+    let [a, b] = of_ends();
     sets.intersection(a, b)
 }
 
@@ -290,7 +289,11 @@ impl Level {
         let mut grain_counts = self.grain_counts.clone();
         grain_counts.extend(born.iter().map(|at| at.grains));
         let mut walls = self.walls.clone();
-        walls.extend(ends.iter().zip(born).map(|(ends, born)| walls_between(self, *ends, born, sets)));
+        walls.extend(
+            ends.iter()
+                .zip(born)
+                .map(|(ends, born)| walls_between(|| ends.map(|end| self.walls[end as usize]), born, sets)),
+        );
         check_cancelled();
         let copies = self.copies.refined(self.vertex_count(), self.element_count(), (&mesh).into());
         Self { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges }
