@@ -9,6 +9,7 @@ pub(crate) mod fault;
 pub(crate) mod folds;
 pub(crate) mod intersections;
 pub(crate) mod nesting;
+pub(crate) mod normal_cone;
 pub(crate) mod orientation;
 pub(crate) mod pinched_points;
 pub(crate) mod projection;

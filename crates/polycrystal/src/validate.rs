@@ -41,9 +41,9 @@ pub(crate) fn certificate(network: &Network, points: &[DVec3], volumes: &[f64]) 
     let sides = network.sides();
     let surface = Surface::of_level(level, points, &sides);
     let volumes: Vec<(GrainId, f64)> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
-    let points_of_level = || (0..level.vertex_count()).into_par_iter();
-    let node_types: Vec<_> = points_of_level().map(|point| Some(level.node_type(point))).collect();
-    let grain_counts: Vec<u8> = points_of_level().map(|point| level.grain_count(point)).collect();
+    let stated_points = || (0..surface.refined_at_most(1).points.len()).into_par_iter();
+    let node_types: Vec<_> = stated_points().map(|point| Some(level.node_type(point))).collect();
+    let grain_counts: Vec<u8> = stated_points().map(|point| level.grain_count(point)).collect();
     let originals = network.domain().is_periodic().then(|| level.originals());
     let expected = Expected {
         // Types in a periodic domain count the grains a period away, which the surface calls exterior.
@@ -112,14 +112,20 @@ mod tests {
     }
 
     #[test]
-    fn points_at_the_same_place_are_found() {
-        let (network, mut points) = cubes(&Domain::unit_cube());
-        // Two points with no triangle in common.
-        let last = points.len() - 1;
-        points[last] = points[0];
-        let faults = validate(&network, &points).expect_err("a point twice").0;
-        let points = [0, u32::try_from(last).expect("a small network")];
-        assert!(faults.contains(&Fault::DuplicatePoints { points }), "{faults:?}");
+    fn points_at_the_same_place_are_found_wherever_they_are() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, points) = cubes(&domain);
+            // With a triangle in common, a point, or nothing.
+            for (second, place) in (0u32..).zip(&points) {
+                for first in (0..second).step_by(7) {
+                    let mut points = points.clone();
+                    points[first as usize] = *place;
+                    let faults = validate(&network, &points).expect_err("a point twice").0;
+                    let points = [first, second];
+                    assert!(faults.contains(&Fault::DuplicatePoints { points }), "{faults:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::ids::{NONE, next, prev};
-use crate::{EdgeId, FaceId, HalfEdgeId, MeshCounts, MeshError, TriangleMesh, large_vec};
+use crate::{EdgeId, FaceId, HalfEdgeId, MeshCounts, MeshError, RefinedTriangle, TriangleMesh, large_vec};
 
 /// Triangles that one task makes.
 const PER_TASK: usize = 4096;
@@ -106,6 +106,52 @@ impl<'a> RefinedMesh<'a> {
         (0..self.levels)
             .rev()
             .fold(triangle, |triangle, level| self.counts_of(level).triangle_parent(triangle))
+    }
+
+    /// What each triangle of the mesh becomes.
+    pub fn refined_triangle(self) -> &'static RefinedTriangle {
+        &RefinedTriangle::OF_LEVELS[self.levels]
+    }
+
+    /// The triangle at a place in one of the mesh. Four in a row come from one triangle on the level before: those at its corners, and its centre.
+    #[inline]
+    pub fn triangle_in(self, triangle: FaceId, place: usize) -> FaceId {
+        let counts = self.mesh.counts();
+        let child = |place: usize| counts.triangle_children(triangle)[place];
+        match self.levels {
+            0 => triangle,
+            1 => child(place),
+            _ => grown(counts).triangle_children(child(place / 4))[place % 4],
+        }
+    }
+
+    /// The vertices in a triangle of the mesh and on its edges: its corners, those on the middles of its edges, on the two halves of each edge, and on
+    /// the edges that cut off the corners. Only the first [`vertices`](RefinedTriangle::vertices) of these are in this mesh; in place of others
+    /// is the first corner.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    #[inline(always)]
+    pub fn vertices_in(self, FaceId(triangle): FaceId) -> [u32; 15] {
+        let [corners, edges] =
+            [&self.mesh.triangles, &self.mesh.directed_edges].map(|of| of[triangle as usize]);
+        let mut vertices = [corners[0]; 15];
+        vertices[..3].copy_from_slice(&corners);
+        if self.levels > 0 {
+            let counts = self.mesh.counts();
+            vertices[3..6].copy_from_slice(&edges.map(|directed| counts.edge_vertex(EdgeId(directed / 2))));
+            if self.levels > 1 {
+                let finer = grown(counts);
+                for k in 0..3 {
+                    // The half of an edge where it starts, and the one where it ends, as the half-edge runs.
+                    let halves = [edges[k], edges[k] ^ 1].map(|half| finer.edge_vertex(EdgeId(half)));
+                    vertices[6 + 2 * k..8 + 2 * k].copy_from_slice(&halves);
+                    vertices[12 + k] =
+                        finer.edge_vertex(EdgeId(2 * counts.edges + 3 * triangle + [0, 1, 2][k]));
+                }
+            }
+        }
+        vertices
     }
 
     /// The edge of a half-edge.
@@ -222,6 +268,8 @@ fn child_twin(triangles: u32, h: u32, beyond: impl Fn(u32) -> Option<u32>) -> Op
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use crate::{EdgeId, FaceId, Features, HalfEdgeId, RefinedMesh, TriangleMesh};
 
     #[test]
@@ -248,6 +296,38 @@ mod tests {
             for edge in (0..made.counts().edges).map(EdgeId) {
                 assert_eq!(refined.edge(edge), made.edge(edge));
             }
+            check_what_is_in_triangles(refined, made);
         }
+    }
+    /// What is in each triangle of the mesh is there in the one that is made, and meets there as it should.
+    fn check_what_is_in_triangles(refined: RefinedMesh<'_>, made: &TriangleMesh) {
+        let pattern = refined.refined_triangle();
+        let mut triangles = BTreeSet::new();
+        for parent in (0..refined.mesh().counts().triangles).map(FaceId) {
+            let vertices = refined.vertices_in(parent);
+            let id = |place: usize| refined.triangle_in(parent, place);
+            for (place, corners) in pattern.triangles.iter().enumerate() {
+                assert_eq!(corners.map(|corner| vertices[corner]), made.triangles()[id(place).index()]);
+                assert!(corners.iter().all(|corner| *corner < pattern.vertices));
+                triangles.insert(id(place));
+            }
+            let beyond = |triangle: FaceId| {
+                let half_edges = (3 * triangle.0..).take(3).map(HalfEdgeId);
+                half_edges.filter_map(|h| made.half_edge_beyond(h)).map(HalfEdgeId::triangle).collect()
+            };
+            for [a, b] in pattern.neighbours.iter().map(|pair| pair.map(id)) {
+                let beyond: Vec<FaceId> = beyond(a);
+                assert!(beyond.contains(&b));
+            }
+            for (h, along) in (3 * parent.0..).map(HalfEdgeId).zip(pattern.along_edges) {
+                let Some(twin) = refined.mesh().half_edge_beyond(h) else { continue };
+                let against = pattern.along_edges[(twin.0 % 3) as usize].iter().rev();
+                for (here, there) in along.iter().zip(against) {
+                    let beyond: Vec<FaceId> = beyond(id(*here));
+                    assert!(beyond.contains(&refined.triangle_in(twin.triangle(), *there)));
+                }
+            }
+        }
+        assert_eq!(triangles.len(), made.triangles().len());
     }
 }

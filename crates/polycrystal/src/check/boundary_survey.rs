@@ -7,11 +7,13 @@ use voronoi::Dimension;
 
 use crate::check::box_tree::Bounds;
 use crate::check::folds::folded_in_boundary;
+use crate::check::intersections::{Extent, bounds_in};
+use crate::check::normal_cone::NormalCone;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::triangle_quality::{SmallestAngles, squared_sine};
 use crate::mesh::volume::{Cone, ElementSum};
-use crate::{Surface, TriangleQuality};
+use crate::{Elements, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
 /// single precision, in which many files keep coordinates, blurs the right angles of a box.
@@ -19,8 +21,8 @@ const FOLD_COSINE: f64 = -1e-6;
 
 /// What is found of each boundary by itself: no more of a boundary is held at a time than its own elements.
 pub(crate) struct BoundarySurvey {
-    /// The box around each boundary.
-    pub(crate) boxes: Vec<Bounds>,
+    /// What each boundary takes up of space.
+    pub(crate) extents: Vec<Extent>,
     /// The cone to each boundary from a point of it.
     pub(crate) cones: Vec<Cone>,
     /// The area of each boundary; in the plane its length.
@@ -35,7 +37,7 @@ pub(crate) struct BoundarySurvey {
 
 /// The same of one boundary.
 struct Surveyed {
-    bounds: Bounds,
+    extent: Extent,
     cone: Cone,
     area: f64,
     flat: Vec<u32>,
@@ -52,8 +54,7 @@ impl BoundarySurvey {
         let none = || (SmallestAngles::new(surface.elements.len()), Vec::new());
         let survey = |(mut angles, mut surveyed): (SmallestAngles, Vec<Surveyed>), boundary: usize| {
             check_cancelled();
-            let neighbors = neighbors.of(boundaries, boundary);
-            surveyed.push(Surveyed::new(surface, boundaries, boundary, &neighbors, &mut angles));
+            surveyed.push(Surveyed::new(surface, boundaries, &neighbors, boundary, &mut angles));
             (angles, surveyed)
         };
         let join = |(angles, mut surveyed): (SmallestAngles, Vec<Surveyed>), (other, others): (_, Vec<_>)| {
@@ -63,15 +64,15 @@ impl BoundarySurvey {
         let (angles, surveyed) =
             (0..boundaries.boundary_count()).into_par_iter().fold(none, survey).reduce(none, join);
         let mut all = Self {
-            boxes: Vec::with_capacity(surveyed.len()),
+            extents: Vec::with_capacity(surveyed.len()),
             cones: Vec::with_capacity(surveyed.len()),
             areas: Vec::with_capacity(surveyed.len()),
             flat: Vec::new(),
             folded: Vec::new(),
             triangles: angles.quality(),
         };
-        for Surveyed { bounds, cone, area, flat, folded } in surveyed {
-            all.boxes.push(bounds);
+        for Surveyed { extent, cone, area, flat, folded } in surveyed {
+            all.extents.push(extent);
             all.cones.push(cone);
             all.areas.push(area);
             all.flat.extend(flat);
@@ -87,45 +88,41 @@ impl Surveyed {
     fn new(
         surface: &Surface<'_>,
         boundaries: &BoundaryElements<'_>,
+        neighbors: &BoundaryNeighbors<'_>,
         boundary: usize,
-        neighbors: &[[u32; 2]],
         angles: &mut SmallestAngles,
     ) -> Self {
-        let elements = boundaries.of(boundary);
-        let dimension = surface.elements.dimension();
+        let elements = surface.elements;
+        let dimension = elements.dimension();
         let mut bounds = Bounds::default();
-        let mut normals = Vec::with_capacity(elements.len());
+        let mut normals = Vec::with_capacity(boundaries.count(boundary));
         let mut sum = ElementSum::default();
-        for element in &elements {
-            let corners = surface.elements.corners(*element);
-            let at = |corner: u32| surface.points[corner as usize];
-            bounds = bounds.with(Bounds::around(corners.iter().map(|corner| at(*corner))));
-            normals.push(match *corners {
-                [a, b, c] => {
-                    let corners = [a, b, c].map(at);
-                    angles.add(squared_sine(corners));
-                    sum.add_triangle(corners)
-                }
-                [a, b] => sum.add_segment([a, b].map(at)),
-                _ => unreachable!("elements have two or three points"),
-            });
+        for labelled in boundaries.labelled(boundary) {
+            let own = elements.points_in(surface.points, *labelled);
+            bounds = bounds.with(bounds_in(surface, *labelled));
+            if let Elements::Segments(_) = elements {
+                normals.push(sum.add_segment([own[0], own[1]]));
+                continue;
+            }
+            for corners in elements.refined_triangle().triangles {
+                let corners = corners.map(|corner| own[corner]);
+                angles.add(squared_sine(corners));
+                normals.push(sum.add_triangle(corners));
+            }
         }
         // Normals of triangles are as long as twice the area.
         let share = if dimension == Dimension::Two { 1.0 } else { 0.5 };
         let has_area = |pair: &[u32; 2]| {
-            pair.iter().all(|element| surface.elements.normal(surface.points, *element) != DVec3::ZERO)
+            pair.iter().all(|element| elements.normal(surface.points, *element) != DVec3::ZERO)
         };
-        let mut folded = folded_in_boundary(&elements, &normals, neighbors, FOLD_COSINE);
+        let mut folded = folded_in_boundary(boundaries, neighbors, boundary, &normals, FOLD_COSINE);
         folded.retain(has_area);
-        let numbered = elements.iter().zip(&normals);
+        let flat = normals.iter().enumerate().filter(|(_, normal)| **normal == DVec3::ZERO);
         Self {
-            bounds,
+            extent: Extent { bounds, normals: NormalCone::of(&normals) },
             cone: sum.cone(dimension),
             area: normals.iter().map(|normal| share * normal.length()).sum(),
-            flat: numbered
-                .filter(|(_, normal)| **normal == DVec3::ZERO)
-                .map(|(element, _)| *element)
-                .collect(),
+            flat: flat.map(|(index, _)| boundaries.element(boundary, index)).collect(),
             folded,
         }
     }

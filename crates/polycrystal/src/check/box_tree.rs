@@ -25,10 +25,12 @@ impl Bounds {
     /// The smallest box around some points.
     #[inline]
     pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, point| Self {
-            lower: bounds.lower.min(point),
-            upper: bounds.upper.max(point),
-        })
+        points.into_iter().fold(Self::EMPTY, Self::with_point)
+    }
+
+    #[inline]
+    pub(crate) fn with_point(self, point: DVec3) -> Self {
+        Self { lower: self.lower.min(point), upper: self.upper.max(point) }
     }
 
     /// Around the ray along x from a point.
@@ -159,11 +161,6 @@ impl BoxTree {
             }
             start = end;
         }
-    }
-
-    /// The box around all items, if there are any.
-    pub(crate) fn bounds(&self) -> Option<&Bounds> {
-        self.boxes.last()
     }
 
     /// The items, those that lie together one after the other.

@@ -2,10 +2,10 @@ use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::LevelView;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::fold::is_folded;
-use crate::{Elements, LevelView};
 
 /// Normal of a triangle, or normal of a segment in the plane, as long as twice its area or as its length.
 pub(crate) fn element_normals<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<DVec3> {
@@ -37,7 +37,6 @@ pub fn folded_edges<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3], cosin
 
 /// The pairs of neighbours that are folded in some boundary, sorted, without normals of more than a boundary at a time.
 pub(crate) fn folded_neighbors(
-    elements: Elements<'_>,
     points: &[DVec3],
     boundaries: &BoundaryElements<'_>,
     neighbors: &BoundaryNeighbors<'_>,
@@ -45,9 +44,8 @@ pub(crate) fn folded_neighbors(
 ) -> Vec<[u32; 2]> {
     let of_boundary = |boundary: usize| {
         check_cancelled();
-        let own = boundaries.of(boundary);
-        let normals: Vec<DVec3> = own.iter().map(|element| elements.normal(points, *element)).collect();
-        folded_in_boundary(&own, &normals, &neighbors.of(boundaries, boundary), cosine)
+        let normals = boundaries.normals(boundary, points);
+        folded_in_boundary(boundaries, neighbors, boundary, &normals, cosine)
     };
     let boundaries = (0..boundaries.boundary_count()).into_par_iter();
     let mut folded: Vec<[u32; 2]> = boundaries.flat_map_iter(of_boundary).collect();
@@ -55,16 +53,21 @@ pub(crate) fn folded_neighbors(
     folded
 }
 
-/// The pairs of neighbours that are folded among some elements with these normals.
+/// The pairs of neighbours that are folded in a boundary whose elements have these normals.
 pub(crate) fn folded_in_boundary(
-    elements: &[u32],
+    boundaries: &BoundaryElements<'_>,
+    neighbors: &BoundaryNeighbors<'_>,
+    boundary: usize,
     normals: &[DVec3],
-    neighbors: &[[u32; 2]],
     cosine: f64,
 ) -> Vec<[u32; 2]> {
-    let is_folded = |pair: &&[u32; 2]| is_folded(pair.map(|index| normals[index as usize]), cosine);
-    let folded = neighbors.iter().filter(is_folded);
-    let mut folded: Vec<[u32; 2]> = folded.map(|pair| pair.map(|index| elements[index as usize])).collect();
-    folded.iter_mut().for_each(|pair| pair.sort_unstable());
+    let mut folded = Vec::new();
+    neighbors.for_each_in(boundaries, boundary, |pair| {
+        if is_folded(pair.map(|index| normals[index]), cosine) {
+            let mut pair = pair.map(|index| boundaries.element(boundary, index));
+            pair.sort_unstable();
+            folded.push(pair);
+        }
+    });
     folded
 }

@@ -1,13 +1,11 @@
 //! Elements that cross each other.
 
-use std::ops::Range;
-
 use cancellation::check_cancelled;
-use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::contact::{segments_cross, triangles_cross};
+use crate::check::normal_cone::NormalCone;
 use crate::check::projection::{Piece, RimEdge, Room, are_one_graph, is_graph};
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::BoundaryElements;
@@ -15,162 +13,160 @@ use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::{Elements, Surface};
 
-/// Elements of the boundaries that are searched at a time, of which and of what lies around them trees and normals are held: 50 bytes
-/// for each. All boundaries of a network of 200 grains on level 3 fit.
-const BATCH: usize = 1 << 20;
+/// What a boundary takes up of space.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Extent {
+    /// The box around it.
+    pub(crate) bounds: Bounds,
+    /// The cone around its normals.
+    pub(crate) normals: NormalCone,
+}
+
+/// The extent of each boundary.
+pub(crate) fn extents(surface: &Surface<'_>, boundaries: &BoundaryElements<'_>) -> Vec<Extent> {
+    let of_boundary = |boundary: usize| {
+        let boxes = boundaries.labelled(boundary).iter().map(|labelled| bounds_in(surface, *labelled));
+        Extent {
+            bounds: boxes.fold(Bounds::default(), Bounds::with),
+            normals: NormalCone::of(&boundaries.normals(boundary, surface.points)),
+        }
+    };
+    (0..boundaries.boundary_count()).into_par_iter().map(of_boundary).collect()
+}
 
 /// All pairs of elements that meet other than in points and edges that they share; sorted, the lower element first.
 ///
-/// All points must be finite; `boxes` are those of the boundaries.
+/// All points must be finite.
 pub(crate) fn crossing_elements(
     surface: &Surface<'_>,
     adjacency: &Adjacency<'_>,
     boundaries: &BoundaryElements<'_>,
-    boxes: &[Bounds],
+    extents: &[Extent],
 ) -> Vec<[u32; 2]> {
-    let of_boundary = |boundary: u32| boxes[boundary as usize];
-    let filled = (0..id(boxes.len())).filter(|boundary| boundaries.count(*boundary as usize) > 0);
+    let of_boundary = |boundary: u32| extents[boundary as usize].bounds;
+    let filled = (0..id(extents.len())).filter(|boundary| boundaries.count(*boundary as usize) > 0);
     // Boundaries that lie together come one after the other, however grains are numbered.
     let all = BoxTree::of_strewn(filled.collect(), of_boundary);
-    let order = all.items();
-    let near = all.overlapping_places(of_boundary);
+    let pairs = all.overlapping_places(of_boundary);
+    let boundary_at = |place: u32| all.items()[place as usize];
     let rims = Grouped::new(
-        boxes.len(),
+        extents.len(),
         adjacency.incidences.iter().map(|at| {
             let rim_edge = RimEdge { edge: at.edge, ends: at.ends(surface.elements) };
             (surface.boundary(at.element).index(), rim_edge)
         }),
     );
-    let search = Search { surface, boundaries, order, rims, at_lines: pairs_at_lines(surface, adjacency) };
-    let mut found = Vec::new();
-    let mut is_proved = vec![false; order.len()];
-    let mut rest = near.as_slice();
-    for batch in search.batches() {
-        let here;
-        (here, rest) = rest.split_at(rest.partition_point(|pair| (pair[0] as usize) < batch.end));
-        found.extend(search.crossing_in(batch, here, &mut is_proved));
+    let search = Search { surface, boundaries, extents, rims, at_lines: pairs_at_lines(surface, adjacency) };
+    let is_proved = |room: &mut Room, pair: &[u32; 2]| search.are_one_graph(pair.map(boundary_at), room);
+    let of_pairs: Vec<bool> = pairs.par_iter().map_init(Room::default, is_proved).collect();
+    // What does not cross another boundary that it is one graph with does not cross itself.
+    let mut of_boundaries = vec![false; extents.len()];
+    for (pair, _) in pairs.iter().zip(&of_pairs).filter(|(_, is_proved)| **is_proved) {
+        pair.iter().for_each(|place| of_boundaries[boundary_at(*place) as usize] = true);
     }
+    let trees: Vec<BoxTree> = all.items().par_iter().map(|boundary| search.tree(*boundary)).collect();
+    let between = pairs.par_iter().zip(&of_pairs).filter(|(_, is_proved)| !**is_proved);
+    let between = between.flat_map_iter(|(pair, _)| {
+        check_cancelled();
+        let [one, other] = pair.map(|place| &trees[place as usize]);
+        search.crossing_between(one, other)
+    });
+    let within = all.items().par_iter().zip(&trees);
+    let within = within.filter(|(boundary, _)| !of_boundaries[**boundary as usize]);
+    let within = within.flat_map_iter(|(boundary, tree)| {
+        check_cancelled();
+        if search.is_graph(*boundary) { Vec::new() } else { search.crossing_within(tree) }
+    });
+    let mut found: Vec<[u32; 2]> = between.chain(within).collect();
     found.par_sort_unstable();
     found
 }
 
-/// What a search for crossings knows of all boundaries. These are counted by rank: in an order in which those that lie together come one
-/// after the other.
+/// What a search for crossings knows of all boundaries.
 struct Search<'a> {
     surface: &'a Surface<'a>,
     boundaries: &'a BoundaryElements<'a>,
-    /// The boundary of each rank.
-    order: &'a [u32],
+    extents: &'a [Extent],
     rims: Grouped<RimEdge>,
     /// Pairs of boundaries that have an edge in common; sorted, the lower first.
     at_lines: Vec<[u32; 2]>,
 }
 
-/// A boundary while it is searched.
-struct Searched {
-    normals: Vec<DVec3>,
-    normal: DVec3,
-    tree: BoxTree,
-}
-
 impl Search<'_> {
-    /// Ranges of ranks whose boundaries have so many elements together that they can be searched at a time.
-    fn batches(&self) -> Vec<Range<usize>> {
-        let mut batches = Vec::new();
-        let (mut start, mut size) = (0, 0);
-        for (rank, boundary) in self.order.iter().enumerate() {
-            size += self.boundaries.count(*boundary as usize);
-            if size >= BATCH {
-                batches.push(start..rank + 1);
-                (start, size) = (rank + 1, 0);
-            }
-        }
-        batches.extend((start < self.order.len()).then_some(start..self.order.len()));
-        batches
-    }
-
-    /// What crosses within the boundaries of a batch, and between each of these pairs of boundaries, the first of which is in it. Boundaries
-    /// that are proved not to cross themselves are marked: all pairs of a boundary are searched before the end of its batch.
-    fn crossing_in(&self, batch: Range<usize>, near: &[[u32; 2]], is_proved: &mut [bool]) -> Vec<[u32; 2]> {
-        let mut ranks: Vec<u32> =
-            near.iter().map(|pair| pair[1]).filter(|rank| *rank as usize >= batch.end).collect();
-        ranks.sort_unstable();
-        ranks.dedup();
-        let first_beyond = batch.len();
-        let beyond = |rank: u32| first_beyond + ranks.binary_search(&rank).expect("all are listed");
-        let index =
-            |rank: u32| if (rank as usize) < batch.end { rank as usize - batch.start } else { beyond(rank) };
-        let own = (batch.start..batch.end).map(id);
-        let searched: Vec<u32> = own.chain(ranks.iter().copied()).collect();
-        let searched: Vec<Searched> = searched.par_iter().map(|rank| self.searched(*rank)).collect();
-        let one_graph: Vec<bool> = near
-            .par_iter()
-            .map_init(Room::default, |room, pair| {
-                let [a, b] = pair.map(|rank| (rank, &searched[index(rank)]));
-                self.are_at_one_line(*pair)
-                    && are_one_graph(
-                        self.surface.points,
-                        [&self.piece(a.0, a.1), &self.piece(b.0, b.1)],
-                        room,
-                    )
-            })
-            .collect();
-        let proved = near.iter().zip(&one_graph).filter(|(_, is_one)| **is_one);
-        proved.for_each(|(pair, _)| pair.iter().for_each(|rank| is_proved[*rank as usize] = true));
-        let bounds = |element: u32| bounds(self.surface, element);
-        let between = near.par_iter().zip(&one_graph).filter(|(_, is_one)| !**is_one);
-        let between = between.flat_map_iter(|(pair, _)| {
-            check_cancelled();
-            let [a, b] = pair.map(|rank| &searched[index(rank)].tree);
-            let mut found = Vec::new();
-            a.overlaps_with(b, bounds, &mut |i, j| found.extend(self.crossing([i, j])));
-            found
-        });
-        let is_proved = &*is_proved;
-        let within = searched.par_iter().zip(batch.start..batch.end).filter(|(_, rank)| !is_proved[*rank]);
-        let within = within.flat_map_iter(|(searched, rank)| {
-            let mut found = Vec::new();
-            check_cancelled();
-            if !self.is_graph(rank, searched) {
-                searched.tree.overlaps_within(bounds, &mut |i, j| found.extend(self.crossing([i, j])));
-            }
-            found
-        });
-        between.chain(within).collect()
-    }
-
-    fn searched(&self, rank: u32) -> Searched {
+    /// The elements of a boundary that hold its label, and what is refined from them.
+    fn tree(&self, boundary: u32) -> BoxTree {
         check_cancelled();
-        let boundary = self.order[rank as usize] as usize;
-        let elements = self.boundaries.of(boundary);
-        let normal = |element: &u32| self.surface.elements.normal(self.surface.points, *element);
-        let normals: Vec<DVec3> = elements.iter().map(normal).collect();
-        let tree = BoxTree::new(elements, |element| bounds(self.surface, element));
-        Searched { normal: normals.iter().sum(), normals, tree }
+        BoxTree::new(self.boundaries.labelled(boundary as usize).to_vec(), |labelled| self.bounds(labelled))
     }
 
-    fn piece<'a>(&'a self, rank: u32, searched: &'a Searched) -> Piece<'a> {
-        Piece {
-            normals: &searched.normals,
-            rim: self.rims.of(self.order[rank as usize] as usize),
-            normal: searched.normal,
-            bounds: searched.tree.bounds().copied().unwrap_or_default(),
-        }
+    fn piece(&self, boundary: u32) -> Piece<'_> {
+        let Extent { bounds, normals } = self.extents[boundary as usize];
+        Piece { normals, rim: self.rims.of(boundary as usize), bounds }
     }
 
-    /// Whether two boundaries in space have an edge in common.
-    fn are_at_one_line(&self, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|rank| self.order[rank as usize]);
-        self.is_in_space() && self.at_lines.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    /// Whether two boundaries in space that have an edge in common are proved not to cross each other, nor themselves.
+    fn are_one_graph(&self, [a, b]: [u32; 2], room: &mut Room) -> bool {
+        self.is_in_space()
+            && self.at_lines.binary_search(&[a.min(b), a.max(b)]).is_ok()
+            && are_one_graph(self.surface.points, [&self.piece(a), &self.piece(b)], room)
     }
 
     /// Whether the triangles of a boundary are proved not to cross each other.
-    fn is_graph(&self, rank: usize, searched: &Searched) -> bool {
-        self.is_in_space() && is_graph(self.surface.points, &self.piece(id(rank), searched))
+    fn is_graph(&self, boundary: u32) -> bool {
+        self.is_in_space() && is_graph(self.surface.points, &self.piece(boundary))
     }
 
     fn is_in_space(&self) -> bool {
         !matches!(self.surface.elements, Elements::Segments(_))
+    }
+
+    fn bounds(&self, labelled: u32) -> Bounds {
+        bounds_in(self.surface, labelled)
+    }
+
+    /// What crosses between two boundaries.
+    fn crossing_between(&self, one: &BoxTree, other: &BoxTree) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        let bounds = |labelled| self.bounds(labelled);
+        one.overlaps_with(other, bounds, &mut |a, b| self.add_crossing(a, b, &mut found));
+        found
+    }
+
+    /// What crosses within a boundary.
+    fn crossing_within(&self, tree: &BoxTree) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        let bounds = |labelled| self.bounds(labelled);
+        tree.overlaps_within(bounds, &mut |a, b| self.add_crossing(a, b, &mut found));
+        tree.items().iter().for_each(|labelled| self.add_crossing(*labelled, *labelled, &mut found));
+        found
+    }
+
+    /// Adds what crosses between the elements that come from one that holds a label and from another, which may be the same.
+    fn add_crossing(&self, one: u32, other: u32, found: &mut Vec<[u32; 2]>) {
+        let elements = self.surface.elements;
+        if elements.refined_triangle().triangles.len() == 1 {
+            found.extend((one != other).then(|| self.crossing([one, other])).flatten());
+            return;
+        }
+        let around = self.bounds(one);
+        let mut near = [(0, Bounds::default()); 16];
+        let mut count = 0;
+        self.for_each_in(other, |place, bounds| {
+            near[count] = (place, bounds);
+            count += usize::from(bounds.overlaps(&around));
+        });
+        if count == 0 {
+            return;
+        }
+        self.for_each_in(one, |place, bounds| {
+            let overlapping = near[..count].iter().filter(|(_, other)| bounds.overlaps(other));
+            for (other_place, _) in
+                overlapping.filter(|(other_place, _)| one != other || place < *other_place)
+            {
+                let pair = [elements.element_in(one, place), elements.element_in(other, *other_place)];
+                found.extend(self.crossing(pair));
+            }
+        });
     }
 
     /// A pair of elements that crosses, the lower first.
@@ -178,6 +174,16 @@ impl Search<'_> {
         // For a triangle that has a corner twice the order matters.
         let pair = [a.min(b), a.max(b)];
         cross(self.surface, pair).then_some(pair)
+    }
+
+    /// Looks at the boxes around the triangles that come from one that holds a label, by their places.
+    #[inline(always)]
+    fn for_each_in(&self, labelled: u32, mut look_at: impl FnMut(usize, Bounds)) {
+        let Surface { elements, points, .. } = *self.surface;
+        let own = elements.points_in(points, labelled);
+        for (place, corners) in elements.refined_triangle().triangles.iter().enumerate() {
+            look_at(place, Bounds::around(corners.map(|corner| own[corner])));
+        }
     }
 }
 
@@ -203,18 +209,14 @@ fn pairs_at_lines(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Vec<[u32;
     pairs
 }
 
-/// The box around each boundary.
-pub(crate) fn boundary_boxes(surface: &Surface<'_>, boundaries: &BoundaryElements<'_>) -> Vec<Bounds> {
-    let around = |boundary: usize| {
-        let boxes = boundaries.of(boundary).into_iter().map(|element| bounds(surface, element));
-        boxes.fold(Bounds::default(), Bounds::with)
-    };
-    (0..boundaries.boundary_count()).into_par_iter().map(around).collect()
-}
-
-fn bounds(surface: &Surface<'_>, element: u32) -> Bounds {
-    let corners = surface.elements.corners(element);
-    Bounds::around(corners.iter().map(|corner| surface.points[*corner as usize]))
+/// The box around what is refined from an element that holds a label.
+#[inline]
+pub(crate) fn bounds_in(surface: &Surface<'_>, labelled: u32) -> Bounds {
+    let mut bounds = Bounds::default();
+    surface
+        .elements
+        .for_each_vertex_in(labelled, |vertex| bounds = bounds.with_point(surface.points[vertex as usize]));
+    bounds
 }
 
 fn cross(surface: &Surface<'_>, pair: [u32; 2]) -> bool {

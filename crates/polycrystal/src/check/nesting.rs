@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::contact::{ray_through_segment, ray_through_triangle};
 use crate::check::fault::Fault;
+use crate::check::intersections::Extent;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
@@ -20,7 +21,7 @@ use crate::{Side, Surface};
 
 /// The pieces of a surface: elements that are connected by points.
 pub(crate) struct Pieces {
-    /// The piece of each point.
+    /// The piece of each point; of refined elements, of the points of what they come from.
     of_points: Vec<u32>,
     count: usize,
 }
@@ -28,6 +29,8 @@ pub(crate) struct Pieces {
 impl Pieces {
     /// Those of a surface; points of no element are pieces of their own.
     pub(crate) fn new(surface: &Surface<'_>) -> Self {
+        // What elements are refined from is in one piece as well.
+        let surface = surface.refined_at_most(0);
         let mut sets = DisjointSets::new(surface.points.len());
         for element in 0..id(surface.elements.len()) {
             let corners = surface.elements.corners(element);
@@ -38,17 +41,17 @@ impl Pieces {
     }
 
     fn of_element(&self, surface: &Surface<'_>, element: u32) -> usize {
-        self.of_points[surface.elements.corners(element)[0] as usize] as usize
+        self.of_points[old_point(surface, element) as usize] as usize
     }
 
     /// The pieces that do not lie in the grain, or outside of all, where their sides have them.
     ///
-    /// Elements must not cross, and grains must be closed; `boxes` are those of the boundaries.
+    /// Elements must not cross, and grains must be closed; `extents` are those of the boundaries.
     pub(crate) fn misplaced(
         &self,
         surface: &Surface<'_>,
         boundaries: &BoundaryElements<'_>,
-        boxes: &[Bounds],
+        extents: &[Extent],
     ) -> Vec<Fault> {
         if self.count == 1 {
             return Vec::new();
@@ -63,9 +66,9 @@ impl Pieces {
             .map(|piece| Piece::new(surface, elements.of(piece)))
             .collect();
         // The boundaries that the ray from each piece may meet.
-        let first_piece = id(boxes.len());
-        let bounds = |item: u32| match boxes.get(item as usize) {
-            Some(bounds) => *bounds,
+        let first_piece = id(extents.len());
+        let bounds = |item: u32| match extents.get(item as usize) {
+            Some(extent) => extent.bounds,
             None => Bounds::of_ray(surface.points[pieces[(item - first_piece) as usize].point as usize]),
         };
         let of_boundaries = (0..first_piece).filter(|boundary| boundaries.count(*boundary as usize) > 0);
@@ -88,6 +91,12 @@ impl Pieces {
     }
 }
 
+/// A point of an element, or of the one that it is refined from.
+fn old_point(surface: &Surface<'_>, element: u32) -> u32 {
+    let coarse = surface.elements.refined_at_most(0);
+    coarse.corners(surface.elements.labelled(element))[0]
+}
+
 /// A closed piece of a surface.
 struct Piece {
     /// A point of it.
@@ -99,7 +108,7 @@ struct Piece {
 impl Piece {
     /// That of some elements, of which those of a boundary come one after the other.
     fn new(surface: &Surface<'_>, elements: &[u32]) -> Self {
-        let point = surface.elements.corners(elements[0])[0];
+        let point = old_point(surface, elements[0]);
         let apex = surface.points[point as usize];
         let mut volumes: BTreeMap<Side, f64> = BTreeMap::new();
         for elements in elements.chunk_by(|a, b| surface.boundary(*a) == surface.boundary(*b)) {

@@ -10,16 +10,15 @@
 use glam::{DVec2, DVec3};
 
 use crate::check::box_tree::{Bounds, BoxTree};
+use crate::check::normal_cone::NormalCone;
 
 /// The triangles of one boundary.
 #[derive(Debug)]
 pub(crate) struct Piece<'a> {
-    /// Of the triangles, as long as twice their areas.
-    pub(crate) normals: &'a [DVec3],
+    /// What is known of the triangles' normals.
+    pub(crate) normals: NormalCone,
     /// The edges that are not between two of the triangles, sorted by place.
     pub(crate) rim: &'a [RimEdge],
-    /// The sum of the triangles' normals.
-    pub(crate) normal: DVec3,
     /// The box around the triangles.
     pub(crate) bounds: Bounds,
 }
@@ -37,7 +36,7 @@ pub(crate) struct RimEdge {
 pub(crate) fn is_graph(points: &[DVec3], piece: &Piece<'_>) -> bool {
     let rim: Vec<[u32; 2]> = piece.rim.iter().map(|edge| edge.ends).collect();
     let middle = middle(points, &rim);
-    let Some(projection) = Projection::new(piece.normal, middle, piece.bounds) else { return false };
+    let Some(projection) = Projection::new(piece.normals.axis(), middle, piece.bounds) else { return false };
     projection.sees_front(piece, 1.0) && projection.is_simple_curve(points, &rim, &mut Vec::new())
 }
 
@@ -52,16 +51,14 @@ pub(crate) fn are_one_graph(
     };
     // Where both run along their line the same way, the second is turned over.
     let sign = if is_alike { -1.0 } else { 1.0 };
-    let [Some(normal), Some(other_normal)] = [first.normal, second.normal].map(DVec3::try_normalize) else {
-        return false;
-    };
     rim.clear();
     rim.extend(shared_edges(first, second).map(|[edge, _]| edge.ends));
     let middle = middle(points, rim);
     rim.clear();
     add_common_rim(first, second, is_alike, rim);
     let bounds = first.bounds.with(second.bounds);
-    let Some(projection) = Projection::new(normal + sign * other_normal, middle, bounds) else {
+    let direction = first.normals.axis() + sign * second.normals.axis();
+    let Some(projection) = Projection::new(direction, middle, bounds) else {
         return false;
     };
     projection.sees_front(first, 1.0)
@@ -198,10 +195,9 @@ impl Projection {
         DVec2::new(from_origin.dot(self.right), from_origin.dot(self.up))
     }
 
-    /// Whether all triangles of a piece, turned over if `sign` is -1, keep their orientation.
+    /// Whether it is known of all triangles of a piece, turned over if `sign` is -1, that they keep their orientation.
     fn sees_front(&self, piece: &Piece<'_>, sign: f64) -> bool {
-        let along = sign * self.along;
-        piece.normals.iter().all(|normal| normal.dot(along) > self.bound)
+        piece.normals.least_along(sign * self.along) > self.bound
     }
 
     /// Whether a rim is for certain one closed curve, counter-clockwise, that does not cross or touch itself. `flat` is room for its edges.
@@ -323,8 +319,8 @@ mod tests {
         rim
     }
 
-    fn piece<'a>(points: &[DVec3], rim: &'a [RimEdge], normals: &'a [DVec3]) -> Piece<'a> {
-        Piece { normals, rim, normal: normals.iter().sum(), bounds: Bounds::around(points.iter().copied()) }
+    fn piece<'a>(points: &[DVec3], rim: &'a [RimEdge], normals: &[DVec3]) -> Piece<'a> {
+        Piece { normals: NormalCone::of(normals), rim, bounds: Bounds::around(points.iter().copied()) }
     }
 
     fn is_graph((points, triangles, rim): &Parts) -> bool {

@@ -57,7 +57,7 @@ fn inner_half_edges(
 
 /// The half-edges of each edge one level on from so many triangles, given those of each edge between two of them: two for its halves, and then
 /// those for the edges inside the triangles.
-pub(crate) fn refined_half_edges(pairs: &[[HalfEdgeId; 2]], triangles: u32) -> Vec<[HalfEdgeId; 2]> {
+fn refined_half_edges(pairs: &[[HalfEdgeId; 2]], triangles: u32) -> Vec<[HalfEdgeId; 2]> {
     // A triangle at a corner has the number of the half-edge that starts there.
     let in_corner = |HalfEdgeId(h): HalfEdgeId, k: u32| HalfEdgeId(3 * h + k);
     let halves = pairs.iter().flat_map(|[along, against]| {

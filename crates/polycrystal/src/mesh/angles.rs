@@ -70,30 +70,25 @@ pub(crate) fn dihedral_sectors(
     sides: &[[Side; 2]],
     at: &[Incidence],
 ) -> Vec<DihedralSector> {
-    let ends = |at: &Incidence| at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    let first = EdgePoints::of(surface, &at[0]);
     let axis = match surface.elements {
-        Elements::Triangles(_) | Elements::Refined(_) => {
-            let [start, end] = ends(&at[0]);
-            (end - start).normalize_or_zero()
-        }
+        Elements::Triangles(_) | Elements::Refined(_) => first.along(),
         Elements::Segments(_) => DVec3::Z,
     };
-    let zero = leg(surface, &at[0]);
+    let zero = first.leg();
     let quarter = axis.cross(zero);
     let mut directions: Vec<(f64, Side)> = at
         .iter()
         .map(|at| {
             let [first, second] = sides[surface.boundary(at.element).index()];
+            let points = EdgePoints::of(surface, at);
             // A triangle that runs along the axis has its second side counter-clockwise of it.
             let is_along = match surface.elements {
-                Elements::Triangles(_) | Elements::Refined(_) => {
-                    let [start, end] = ends(at);
-                    (end - start).dot(axis) > 0.0
-                }
+                Elements::Triangles(_) | Elements::Refined(_) => (points.end - points.start).dot(axis) > 0.0,
                 // A segment that starts here has its first side on the left.
                 Elements::Segments(_) => at.corner == 1,
             };
-            let leg = leg(surface, at);
+            let leg = points.leg();
             (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
         })
         .collect();
@@ -120,17 +115,36 @@ pub(crate) fn edge_length(surface: &Surface<'_>, at: &[Incidence]) -> f64 {
 
 /// The unit vector from an edge into its triangle, square to the edge; in the plane, from a point along its segment.
 pub(crate) fn leg(surface: &Surface<'_>, at: &Incidence) -> DVec3 {
-    let corners = surface.elements.corners(at.element);
-    let [start, end] = at.ends(surface.elements).map(|end| surface.points[end as usize]);
-    match surface.elements {
-        Elements::Triangles(_) | Elements::Refined(_) => {
-            let apex = surface.points[corners[usize::from((at.corner + 2) % 3)] as usize];
-            let along = (end - start).normalize_or_zero();
-            (apex - start).reject_from_normalized(along).normalize_or_zero()
+    EdgePoints::of(surface, at).leg()
+}
+
+/// The ends of an edge as its triangle runs along it, and the triangle's other corner; in the plane, a point twice, and the other end of its segment.
+struct EdgePoints {
+    start: DVec3,
+    end: DVec3,
+    other: DVec3,
+}
+
+impl EdgePoints {
+    #[inline]
+    fn of(surface: &Surface<'_>, at: &Incidence) -> Self {
+        let corners = surface.elements.corners(at.element);
+        let corner = usize::from(at.corner);
+        let [start, end, other] = match surface.elements {
+            Elements::Triangles(_) | Elements::Refined(_) => [corner, (corner + 1) % 3, (corner + 2) % 3],
+            Elements::Segments(_) => [corner, corner, 1 - corner],
         }
-        Elements::Segments(_) => {
-            let other = surface.points[corners[usize::from(1 - at.corner)] as usize];
-            (other - start).normalize_or_zero()
-        }
+        .map(|corner| surface.points[corners[corner] as usize]);
+        Self { start, end, other }
+    }
+
+    /// The direction of the edge.
+    fn along(&self) -> DVec3 {
+        (self.end - self.start).normalize_or_zero()
+    }
+
+    fn leg(&self) -> DVec3 {
+        // A point has no direction.
+        (self.other - self.start).reject_from_normalized(self.along()).normalize_or_zero()
     }
 }

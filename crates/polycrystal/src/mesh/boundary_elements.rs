@@ -1,8 +1,8 @@
+use glam::DVec3;
 use subzero::{FaceId, HalfEdgeId, RefinedMesh};
 
-use crate::mesh::adjacency::{Adjacency, Inner, refined_half_edges};
+use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::grouped::Grouped;
-use crate::mesh::id::id;
 use crate::{BoundaryId, Elements, LevelView, Surface};
 
 /// The elements of each boundary.
@@ -15,16 +15,16 @@ pub(crate) struct BoundaryElements<'a> {
 impl<'a> BoundaryElements<'a> {
     /// Those of a surface.
     pub(crate) fn new(surface: &Surface<'a>) -> Self {
-        Self::labelled(surface.elements, surface.boundary_of, surface.sides.len())
+        Self::by_label(surface.elements, surface.boundary_of, surface.sides.len())
     }
 
     /// Those of a level with so many boundaries.
     pub(crate) fn of_level(level: impl Into<LevelView<'a>>, boundary_count: usize) -> Self {
         let level = level.into();
-        Self::labelled(level.elements(), level.labels(), boundary_count)
+        Self::by_label(level.elements(), level.labels(), boundary_count)
     }
 
-    fn labelled(elements: Elements<'a>, boundary_of: &[BoundaryId], boundary_count: usize) -> Self {
+    fn by_label(elements: Elements<'a>, boundary_of: &[BoundaryId], boundary_count: usize) -> Self {
         let labels = (0u32..).zip(boundary_of).map(|(element, boundary)| (boundary.index(), element));
         Self { elements, labelled: Grouped::new(boundary_count, labels) }
     }
@@ -36,28 +36,41 @@ impl<'a> BoundaryElements<'a> {
 
     /// Number of elements of a boundary.
     pub(crate) fn count(&self, boundary: usize) -> usize {
-        let labelled = self.labelled.of(boundary).len();
-        labelled << (2 * self.levels())
+        self.labelled(boundary).len() * self.per_label()
     }
 
-    /// How many levels elements are finer than those that hold their labels.
-    fn levels(&self) -> usize {
-        match self.elements {
-            Elements::Refined(mesh) => mesh.levels(),
-            Elements::Triangles(_) | Elements::Segments(_) => 0,
-        }
+    /// How many elements come from each that holds a label.
+    fn per_label(&self) -> usize {
+        self.elements.refined_triangle().triangles.len()
     }
 
-    /// The elements of a boundary, in order. Where they are refined, they are numbered among themselves as [`MeshCounts`](subzero::MeshCounts) says, too.
+    /// The elements of a boundary that hold its label, in order.
+    pub(crate) fn labelled(&self, boundary: usize) -> &[u32] {
+        self.labelled.of(boundary)
+    }
+
+    /// The element of a boundary with this index.
+    pub(crate) fn element(&self, boundary: usize, index: usize) -> u32 {
+        let count = self.per_label();
+        self.elements.element_in(self.labelled(boundary)[index / count], index % count)
+    }
+
+    /// The elements of a boundary: where they are refined, those in one that holds its label follow each other.
     pub(crate) fn of(&self, boundary: usize) -> Vec<u32> {
-        let labelled = self.labelled.of(boundary).to_vec();
-        let Elements::Refined(mesh) = self.elements else { return labelled };
-        (0..mesh.levels()).fold(labelled, |parents, level| {
-            let children = |parent: &u32| mesh.counts_of(level).triangle_children(FaceId(*parent));
-            let corners = parents.iter().flat_map(|parent| children(parent).into_iter().take(3));
-            let centres = parents.iter().map(|parent| children(parent)[3]);
-            corners.chain(centres).map(|child| child.0).collect()
-        })
+        let count = self.per_label();
+        let labelled = self.labelled(boundary).iter();
+        labelled
+            .flat_map(|labelled| (0..count).map(|place| self.elements.element_in(*labelled, place)))
+            .collect()
+    }
+
+    /// The normals of the elements of a boundary, as of [`Elements::normal`].
+    pub(crate) fn normals(&self, boundary: usize, points: &[DVec3]) -> Vec<DVec3> {
+        let mut normals = Vec::with_capacity(self.count(boundary));
+        for labelled in self.labelled(boundary) {
+            self.elements.for_each_normal_in(points, *labelled, |normal| normals.push(normal));
+        }
+        normals
     }
 }
 
@@ -93,25 +106,35 @@ impl<'a> BoundaryNeighbors<'a> {
         }
     }
 
-    /// The pairs of neighbours in a boundary, by their indices among its elements.
-    pub(crate) fn of(&self, boundaries: &BoundaryElements<'_>, boundary: usize) -> Vec<[u32; 2]> {
+    /// Looks at all pairs of neighbours in a boundary, by their indices among its elements.
+    pub(crate) fn for_each_in(
+        &self,
+        boundaries: &BoundaryElements<'_>,
+        boundary: usize,
+        mut look_at: impl FnMut([usize; 2]),
+    ) {
         let (mesh, boundary_of, index_of) = match self {
-            Self::Listed(pairs) => return pairs.of(boundary).to_vec(),
+            Self::Listed(pairs) => {
+                return pairs.of(boundary).iter().for_each(|pair| look_at(pair.map(|index| index as usize)));
+            }
             Self::OfMesh { mesh, boundary_of, index_of } => (mesh, boundary_of, index_of),
         };
-        let labelled = boundaries.labelled.of(boundary);
-        // The half-edge counted by the triangle's index.
-        let counted = |h: HalfEdgeId| HalfEdgeId(3 * index_of[h.triangle().index()] + h.0 % 3);
+        let refined = mesh.refined_triangle();
+        let count = refined.triangles.len();
         let is_own = |triangle: FaceId| boundary_of[triangle.index()].index() == boundary;
-        let half_edges =
-            labelled.iter().flat_map(|triangle| (3 * triangle..3 * triangle + 3).map(HalfEdgeId));
-        let pairs = half_edges.filter_map(|h| {
-            let beyond = mesh.mesh().half_edge_beyond(h)?;
-            (beyond > h && is_own(beyond.triangle())).then(|| [h, beyond].map(counted))
-        });
-        let count = id(labelled.len());
-        let pairs = (0..mesh.levels())
-            .fold(pairs.collect(), |pairs: Vec<_>, level| refined_half_edges(&pairs, count << (2 * level)));
-        pairs.into_iter().map(|pair| pair.map(|h| h.triangle().0)).collect()
+        for (index, triangle) in boundaries.labelled(boundary).iter().enumerate() {
+            let own = |place: usize| index * count + place;
+            refined.neighbours.iter().for_each(|pair| look_at(pair.map(own)));
+            for (h, along) in (3 * triangle..).map(HalfEdgeId).zip(refined.along_edges) {
+                let beyond = mesh.mesh().half_edge_beyond(h).filter(|beyond| *beyond > h);
+                let Some(beyond) = beyond.filter(|beyond| is_own(beyond.triangle())) else { continue };
+                let other = index_of[beyond.triangle().index()] as usize;
+                let against = refined.along_edges[(beyond.0 % 3) as usize].iter().rev();
+                along
+                    .iter()
+                    .zip(against)
+                    .for_each(|(here, there)| look_at([own(*here), other * count + there]));
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@ use std::ops::Deref;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{FaceId, RefinedMesh};
+use subzero::{FaceId, RefinedMesh, RefinedTriangle};
 use voronoi::Dimension;
 
 use crate::Mesh;
@@ -82,6 +82,60 @@ impl<'a> Elements<'a> {
         <[u32; COUNT]>::try_from(&*self.corners(element)).expect("an element of as many points")
     }
 
+    /// The same elements, refined so many times at most.
+    pub(crate) fn refined_at_most(self, levels: usize) -> Self {
+        match self {
+            Self::Refined(mesh) if mesh.levels() > levels => Self::Refined(mesh.at(levels)),
+            _ => self,
+        }
+    }
+
+    /// What each triangle that holds a label is refined to.
+    #[inline]
+    pub(crate) fn refined_triangle(self) -> &'static RefinedTriangle {
+        match self {
+            Self::Triangles(_) | Self::Segments(_) => &RefinedTriangle::OF_LEVELS[0],
+            Self::Refined(mesh) => mesh.refined_triangle(),
+        }
+    }
+
+    /// Looks at the vertices in an element that holds a label; of a triangle, in the order of [`RefinedMesh::vertices_in`].
+    ///
+    /// # Panics
+    /// If there is no such element.
+    #[inline(always)]
+    pub(crate) fn for_each_vertex_in(self, labelled: u32, look_at: impl FnMut(u32)) {
+        match self {
+            Self::Triangles(triangles) => triangles[labelled as usize].into_iter().for_each(look_at),
+            Self::Segments(segments) => segments[labelled as usize].into_iter().for_each(look_at),
+            Self::Refined(mesh) => {
+                let vertices = mesh.vertices_in(FaceId(labelled));
+                vertices.into_iter().take(mesh.refined_triangle().vertices).for_each(look_at);
+            }
+        }
+    }
+
+    /// Where these vertices are; in place of more than there are is the origin.
+    #[inline(always)]
+    pub(crate) fn points_in(self, points: &[DVec3], labelled: u32) -> [DVec3; 15] {
+        let mut own = [DVec3::ZERO; 15];
+        let mut count = 0;
+        self.for_each_vertex_in(labelled, |vertex| {
+            own[count] = points[vertex as usize];
+            count += 1;
+        });
+        own
+    }
+
+    /// The element at a place in one that holds a label.
+    #[inline]
+    pub(crate) fn element_in(self, labelled: u32, place: usize) -> u32 {
+        match self {
+            Self::Triangles(_) | Self::Segments(_) => labelled,
+            Self::Refined(mesh) => mesh.triangle_in(FaceId(labelled), place).0,
+        }
+    }
+
     /// The element that holds the label of an element: itself, or what it was refined from.
     #[inline]
     pub(crate) fn labelled(self, element: u32) -> u32 {
@@ -99,6 +153,20 @@ impl<'a> Elements<'a> {
         match self {
             Self::Triangles(_) | Self::Refined(_) => (b - a).cross(c - a),
             Self::Segments(_) => (b - a).cross(DVec3::Z),
+        }
+    }
+
+    /// Looks at the normals of the elements in one that holds a label, in order of their places.
+    #[inline(always)]
+    pub(crate) fn for_each_normal_in(self, points: &[DVec3], labelled: u32, mut look_at: impl FnMut(DVec3)) {
+        if let Self::Segments(_) = self {
+            return look_at(self.normal(points, labelled));
+        }
+        let own = self.points_in(points, labelled);
+        for [a, b, c] in
+            self.refined_triangle().triangles.iter().map(|corners| corners.map(|corner| own[corner]))
+        {
+            look_at((b - a).cross(c - a));
         }
     }
 

@@ -41,6 +41,16 @@ impl<'a> Surface<'a> {
         last_place(self.points)
     }
 
+    /// The same surface, refined so many times at most.
+    pub(crate) fn refined_at_most(&self, levels: usize) -> Self {
+        let elements = self.elements.refined_at_most(levels);
+        let points = match elements {
+            Elements::Refined(mesh) => &self.points[..mesh.counts().vertices as usize],
+            Elements::Triangles(_) | Elements::Segments(_) => self.points,
+        };
+        Self { points, elements, ..*self }
+    }
+
     /// The grains beside two elements, in order.
     pub(crate) fn grains_at(&self, elements: [u32; 2]) -> Vec<GrainId> {
         let sides = elements.map(|element| self.sides_of(element));

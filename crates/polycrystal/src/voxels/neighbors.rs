@@ -3,7 +3,7 @@
 use glam::{DVec3, UVec3};
 use rayon::prelude::*;
 
-use crate::check::intersections::{boundary_boxes, crossing_elements};
+use crate::check::intersections::{crossing_elements, extents};
 use crate::mesh::adjacency::{Adjacency, Inner};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::fold::is_folded;
@@ -130,7 +130,7 @@ fn crossings_of(
     adjacency: &Adjacency<'_>,
     boundaries: &BoundaryElements<'_>,
 ) -> Vec<[u32; 2]> {
-    crossing_elements(surface, adjacency, boundaries, &boundary_boxes(surface, boundaries))
+    crossing_elements(surface, adjacency, boundaries, &extents(surface, boundaries))
 }
 
 /// Each item once, in order.

@@ -230,7 +230,15 @@ fn the_finest_levels_are_known_without_being_held() {
             let [of_known, of_whole] = [&known, &whole].map(|of| of.angles.expect("boundaries meet"));
             assert!((of_known.mean - of_whole.mean).abs() < 1e-10);
             assert!((of_known.standard_deviation - of_whole.standard_deviation).abs() < 1e-10);
-            [known, whole].map(|certificate| Certificate { angles: None, ..certificate })
+            // So are elements that are not held, in which volumes do.
+            for ((grain, volume), whole) in known.grain_volumes.iter().zip(&whole.grain_volumes) {
+                assert!(*grain == whole.0 && (volume / whole.1 - 1.0).abs() < 1e-12);
+            }
+            [known, whole].map(|certificate| Certificate {
+                angles: None,
+                grain_volumes: Vec::new(),
+                ..certificate
+            })
         };
         let [of_known, of_whole] = both(&points);
         assert!(of_known.is_good());

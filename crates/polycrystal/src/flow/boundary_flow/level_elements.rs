@@ -45,7 +45,7 @@ impl<'a> LevelSectors<'a> {
     /// Pairs of elements that are folded, or have passed each other.
     pub(super) fn folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
         let LevelElements { level, boundaries, neighbors } = &self.elements;
-        let mut folds = folded_neighbors(level.elements(), points, boundaries, neighbors, 0.0);
+        let mut folds = folded_neighbors(points, boundaries, neighbors, 0.0);
         folds.extend(self.dihedral_sectors.turned(level.elements(), points));
         folds
     }

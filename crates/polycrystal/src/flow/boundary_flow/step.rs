@@ -13,7 +13,6 @@ use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::tied_points::Numbering;
 use crate::mesh::fold::{LARGEST_FOLD, are_apart, is_folded};
-use crate::mesh::id::id;
 use crate::mesh::rounding;
 use crate::mesh::volume::volumes_of_grains;
 use crate::{Freedom, NetworkError, Volumes};
@@ -124,28 +123,27 @@ impl Flow<'_> {
             Volumes::Kept => LARGEST_FOLD,
             Volumes::Free => -1.0,
         };
-        let LevelElements { level, boundaries, neighbors } = &self.elements;
+        let LevelElements { boundaries, neighbors, .. } = &self.elements;
         let of_boundary = |boundary: usize| {
-            let own = boundaries.of(boundary);
-            let normals = |points: &[DVec3]| -> Vec<DVec3> {
-                own.iter().map(|element| level.elements().normal(points, *element)).collect()
-            };
-            let [before, after] = [before, after].map(normals);
-            let is_turned = |index: &u32| {
-                are_apart([&before, &after].map(|normals| normals[*index as usize]), LARGEST_FOLD)
-            };
-            let of_pair = |normals: &[DVec3], pair: [u32; 2]| pair.map(|index| normals[index as usize]);
+            let [before, after] = [before, after].map(|points| boundaries.normals(boundary, points));
+            let is_turned =
+                |index: &usize| are_apart([&before, &after].map(|normals| normals[*index]), LARGEST_FOLD);
+            let of_pair = |normals: &[DVec3], pair: [usize; 2]| pair.map(|index| normals[index]);
             let cosine = |pair: [DVec3; 2]| {
                 let [a, b] = pair.map(DVec3::normalize_or_zero);
                 a.dot(b)
             };
-            let is_bent = |pair: &[u32; 2]| {
-                is_folded(of_pair(&after, *pair), largest_bend)
-                    && cosine(of_pair(&after, *pair)) < cosine(of_pair(&before, *pair)) - rounding::OF_COSINES
+            let is_bent = |pair: [usize; 2]| {
+                is_folded(of_pair(&after, pair), largest_bend)
+                    && cosine(of_pair(&after, pair)) < cosine(of_pair(&before, pair)) - rounding::OF_COSINES
             };
-            let bent = neighbors.of(boundaries, boundary).into_iter().filter(is_bent).flatten();
-            let turned = (0..id(own.len())).filter(is_turned);
-            turned.chain(bent).map(|index| own[index as usize]).collect::<Vec<u32>>()
+            let mut broken: Vec<usize> = (0..after.len()).filter(is_turned).collect();
+            neighbors.for_each_in(boundaries, boundary, |pair| {
+                if is_bent(pair) {
+                    broken.extend(pair);
+                }
+            });
+            broken.into_iter().map(|index| boundaries.element(boundary, index)).collect::<Vec<u32>>()
         };
         (0..boundaries.boundary_count()).into_par_iter().flat_map_iter(of_boundary).collect()
     }
