@@ -11,6 +11,7 @@ pub(crate) mod fold;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;
+pub(crate) mod level_points;
 pub(crate) mod nearest_point;
 pub(crate) mod node_type;
 pub(crate) mod periodic;

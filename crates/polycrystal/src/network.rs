@@ -22,12 +22,14 @@ use rayon::prelude::*;
 use subzero::{EdgeId, TriangleMesh};
 use voronoi::Domain;
 
+use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::id::id;
 use crate::mesh::level::LevelMesh;
-use crate::mesh::volume::{boundary_cones, refined_cones, volumes_of_grains};
+use crate::mesh::level_points::LevelPoints;
+use crate::mesh::volume::{boundary_cones, volumes_of_grains};
 use crate::{
-    Boundary, Freedom, Level, LevelView, Mesh, NetworkError, PeriodicCopies, RefinedLevel, Side, Surface,
-    WallSet, WallSets,
+    Boundary, Freedom, Level, LevelView, Mesh, NetworkError, PeriodicCopies, RefinedLevel, Side, WallSet,
+    WallSets,
 };
 use control_mesh::JunctionCounts;
 use tension::{checked_mobility, checked_tension, mean_in_flow};
@@ -215,6 +217,15 @@ impl Network {
         LevelView::Refined(RefinedLevel::new(held, beyond + 1, &self.boundaries, copies, level))
     }
 
+    /// The same, in space as it follows from the level two before where there is one.
+    pub(crate) fn level_from_before(&self, level: usize) -> LevelView<'_> {
+        if self.beyond(level).is_none() {
+            return self.level(level);
+        }
+        let (before, copies) = (&self.levels[level - 2], self.level(level).copies());
+        LevelView::Refined(RefinedLevel::new(before, 2, &self.boundaries, copies, level))
+    }
+
     /// The connectivity of the finest level.
     pub fn finest(&self) -> LevelView<'_> {
         self.level(self.level_count())
@@ -282,6 +293,23 @@ impl Network {
         refined
     }
 
+    /// The points of level `to`, as of [`Self::level_from_before`], for those of level `from`, up to rounding. In space, those of level 2 and finer ones are not
+    /// kept: they would take four times as much memory as those of the level before.
+    ///
+    /// # Panics
+    /// As of [`Self::subdivide_between`].
+    pub(crate) fn points_between(&self, from: usize, to: usize, points: &[DVec3]) -> LevelPoints<'_> {
+        match self.beyond(to) {
+            Some(mesh) if from < to => {
+                LevelPoints::following(mesh, self.refined_points(from, to - 1, points))
+            }
+            _ => {
+                let elements = self.level_from_before(to).elements();
+                LevelPoints::held(elements, self.subdivide_between(from, to, points))
+            }
+        }
+    }
+
     /// As [`Self::subdivide_between`], where rounding may take points on walls and copies from their places.
     fn refined_points(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
         assert_eq!(points.len(), self.level(from).vertex_count(), "there must be one point per vertex");
@@ -347,23 +375,14 @@ impl Network {
 
     /// Volume (in the plane: area) of each grain, for points of the given level.
     pub fn grain_volumes<'a>(&self, level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<f64> {
-        let cones = boundary_cones(&Surface::of_level(level.into(), points, &self.sides()));
-        volumes_of_grains(&self.boundaries, &cones, self.grain_count())
+        let level = level.into();
+        self.volumes_of(level, &LevelPoints::held(level.elements(), points))
     }
 
-    /// Volume (in the plane: area) of each grain on level `to`, for the points of level `from`, up to rounding.
-    ///
-    /// In space, points of the third level and finer ones are not kept: they would take four times as much memory as those of the level before.
-    ///
-    /// # Panics
-    /// As of [`Self::subdivide_between`].
-    pub(crate) fn grain_volumes_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<f64> {
-        let (Some(mesh), true) = (self.beyond(to), from < to) else {
-            return self.grain_volumes(self.level(to), &self.subdivide_between(from, to, points));
-        };
-        let coarser = self.refined_points(from, to - 1, points);
-        let cones = refined_cones(mesh, &self.levels[to - 2], self.boundaries.len(), &coarser);
-        volumes_of_grains(&self.boundaries, &cones, self.grain_count())
+    /// Volume (in the plane: area) of each grain on a level whose elements have these points.
+    pub(crate) fn volumes_of(&self, level: LevelView<'_>, points: &LevelPoints<'_>) -> Vec<f64> {
+        let boundaries = BoundaryElements::of_level(level, self.boundaries.len());
+        volumes_of_grains(&self.boundaries, &boundary_cones(&boundaries, points), self.grain_count())
     }
 
     /// Surface area (in the plane: perimeter) of each grain, for points of the given level.

@@ -299,6 +299,12 @@ mod tests {
             check_what_is_in_triangles(refined, made);
         }
     }
+    /// The ends of a half-edge.
+    fn ends_of(mesh: &TriangleMesh, h: HalfEdgeId) -> [u32; 2] {
+        let corners = mesh.triangles()[h.triangle().index()];
+        [0, 1].map(|end| corners[((h.0 + end) % 3) as usize])
+    }
+
     /// What is in each triangle of the mesh is there in the one that is made, and meets there as it should.
     fn check_what_is_in_triangles(refined: RefinedMesh<'_>, made: &TriangleMesh) {
         let pattern = refined.refined_triangle();
@@ -320,11 +326,22 @@ mod tests {
                 assert!(beyond.contains(&b));
             }
             for (h, along) in (3 * parent.0..).map(HalfEdgeId).zip(pattern.along_edges) {
+                let half_edge = |triangle: FaceId, (place, edge): &(usize, usize)| {
+                    HalfEdgeId(3 * refined.triangle_in(triangle, *place).0 + u32::try_from(*edge).unwrap())
+                };
+                // They follow each other from corner to corner.
+                let ends = along.iter().map(|at| ends_of(made, half_edge(parent, at)));
+                let ends: Vec<[u32; 2]> = ends.collect();
+                assert!(ends.windows(2).all(|pair| pair[0][1] == pair[1][0]));
+                let corners = refined.mesh().triangles()[parent.index()];
+                let first = (h.0 % 3) as usize;
+                let along_parent = [corners[first], corners[(first + 1) % 3]];
+                assert_eq!([ends[0][0], ends[ends.len() - 1][1]], along_parent);
                 let Some(twin) = refined.mesh().half_edge_beyond(h) else { continue };
                 let against = pattern.along_edges[(twin.0 % 3) as usize].iter().rev();
                 for (here, there) in along.iter().zip(against) {
-                    let beyond: Vec<FaceId> = beyond(id(*here));
-                    assert!(beyond.contains(&refined.triangle_in(twin.triangle(), *there)));
+                    let beyond = made.half_edge_beyond(half_edge(parent, here));
+                    assert_eq!(beyond, Some(half_edge(twin.triangle(), there)));
                 }
             }
         }

@@ -12,25 +12,34 @@ pub struct RefinedTriangle {
     pub triangles: &'static [[usize; 3]],
     /// The two triangles at each edge inside it.
     pub neighbours: &'static [[usize; 2]],
-    /// The triangles along each of its edges, as the edge runs.
-    pub along_edges: [&'static [usize]; 3],
+    /// The triangles along each of its edges, as the edge runs, and the number of the edge that each has there.
+    pub along_edges: [&'static [(usize, usize)]; 3],
 }
 
 impl RefinedTriangle {
     /// That which is refined so many times.
     pub const OF_LEVELS: [Self; 3] = [
-        Self { vertices: 3, triangles: &[[0, 1, 2]], neighbours: &[], along_edges: [&[0], &[0], &[0]] },
+        Self {
+            vertices: 3,
+            triangles: &[[0, 1, 2]],
+            neighbours: &[],
+            along_edges: [&[(0, 0)], &[(0, 1)], &[(0, 2)]],
+        },
         Self {
             vertices: 6,
             triangles: &ONCE,
             neighbours: &neighbours::<4, 3>(&ONCE),
-            along_edges: [&[0, 1], &[1, 2], &[2, 0]],
+            along_edges: [&[(0, 0), (1, 2)], &[(1, 0), (2, 2)], &[(2, 0), (0, 2)]],
         },
         Self {
             vertices: 15,
             triangles: &TriangleMesh::TRIANGLES_BEYOND,
             neighbours: &neighbours::<16, 18>(&TriangleMesh::TRIANGLES_BEYOND),
-            along_edges: [&[0, 1, 6, 4], &[4, 5, 10, 8], &[8, 9, 2, 0]],
+            along_edges: [
+                &[(0, 0), (1, 2), (6, 0), (4, 2)],
+                &[(4, 0), (5, 2), (10, 0), (8, 2)],
+                &[(8, 0), (9, 2), (2, 0), (0, 2)],
+            ],
         },
     ];
 }

@@ -13,7 +13,7 @@ use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::triangle_quality::{SmallestAngles, squared_sine};
 use crate::mesh::volume::{Cone, ElementSum};
-use crate::{Elements, Surface, TriangleQuality};
+use crate::{Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
 /// single precision, in which many files keep coordinates, blurs the right angles of a box.
@@ -100,15 +100,12 @@ impl Surveyed {
         for labelled in boundaries.labelled(boundary) {
             let own = elements.points_in(surface.points, *labelled);
             bounds = bounds.with(bounds_in(surface, *labelled));
-            if let Elements::Segments(_) = elements {
-                normals.push(sum.add_segment([own[0], own[1]]));
-                continue;
-            }
-            for corners in elements.refined_triangle().triangles {
-                let corners = corners.map(|corner| own[corner]);
-                angles.add(squared_sine(corners));
-                normals.push(sum.add_triangle(corners));
-            }
+            elements.for_each_in(&own, |corners| {
+                if let [a, b, c] = *corners {
+                    angles.add(squared_sine([a, b, c]));
+                }
+                normals.push(sum.add(corners));
+            });
         }
         // Normals of triangles are as long as twice the area.
         let share = if dimension == Dimension::Two { 1.0 } else { 0.5 };

@@ -6,6 +6,7 @@ use crate::LevelView;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::fold::is_folded;
+use crate::mesh::level_points::LevelPoints;
 
 /// Normal of a triangle, or normal of a segment in the plane, as long as twice its area or as its length.
 pub(crate) fn element_normals<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<DVec3> {
@@ -37,7 +38,7 @@ pub fn folded_edges<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3], cosin
 
 /// The pairs of neighbours that are folded in some boundary, sorted, without normals of more than a boundary at a time.
 pub(crate) fn folded_neighbors(
-    points: &[DVec3],
+    points: &LevelPoints<'_>,
     boundaries: &BoundaryElements<'_>,
     neighbors: &BoundaryNeighbors<'_>,
     cosine: f64,

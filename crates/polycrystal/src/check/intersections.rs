@@ -11,6 +11,7 @@ use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
+use crate::mesh::level_points::LevelPoints;
 use crate::{Elements, Surface};
 
 /// What a boundary takes up of space.
@@ -24,11 +25,12 @@ pub(crate) struct Extent {
 
 /// The extent of each boundary.
 pub(crate) fn extents(surface: &Surface<'_>, boundaries: &BoundaryElements<'_>) -> Vec<Extent> {
+    let points = LevelPoints::held(surface.elements, surface.points);
     let of_boundary = |boundary: usize| {
         let boxes = boundaries.labelled(boundary).iter().map(|labelled| bounds_in(surface, *labelled));
         Extent {
             bounds: boxes.fold(Bounds::default(), Bounds::with),
-            normals: NormalCone::of(&boundaries.normals(boundary, surface.points)),
+            normals: NormalCone::of(&boundaries.normals(boundary, &points)),
         }
     };
     (0..boundaries.boundary_count()).into_par_iter().map(of_boundary).collect()
@@ -180,10 +182,11 @@ impl Search<'_> {
     #[inline(always)]
     fn for_each_in(&self, labelled: u32, mut look_at: impl FnMut(usize, Bounds)) {
         let Surface { elements, points, .. } = *self.surface;
-        let own = elements.points_in(points, labelled);
-        for (place, corners) in elements.refined_triangle().triangles.iter().enumerate() {
-            look_at(place, Bounds::around(corners.map(|corner| own[corner])));
-        }
+        let mut place = 0;
+        elements.for_each_in(&elements.points_in(points, labelled), |corners| {
+            look_at(place, Bounds::around(corners.iter().copied()));
+            place += 1;
+        });
     }
 }
 

@@ -2,6 +2,8 @@ use glam::DVec3;
 
 use crate::check::closedness::open_edge_count;
 use crate::mesh::adjacency::Adjacency;
+use crate::mesh::boundary_elements::BoundaryElements;
+use crate::mesh::level_points::LevelPoints;
 use crate::mesh::volume::boundary_cones;
 use crate::{Side, Surface};
 
@@ -17,7 +19,10 @@ pub fn outward_sides(surface: &Surface<'_>) -> Vec<[Side; 2]> {
         sides.iter().map(|at| if is_outer(at) == outer { [at[1], at[0]] } else { *at }).collect()
     };
     let origin = surface.points.first().copied().unwrap_or(DVec3::ZERO);
-    let volumes = boundary_cones(surface).into_iter().map(|cone| cone.volume_from(origin));
+    let volumes =
+        boundary_cones(&BoundaryElements::new(surface), &LevelPoints::held(surface.elements, surface.points))
+            .into_iter()
+            .map(|cone| cone.volume_from(origin));
     let outer = surface.sides.iter().zip(volumes).filter(|(sides, _)| is_outer(sides));
     let enclosed: f64 =
         outer.map(|(sides, volume)| if sides[0] == Side::Exterior { -volume } else { volume }).sum();

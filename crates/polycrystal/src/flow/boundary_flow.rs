@@ -24,6 +24,7 @@ use crate::flow::tied_points::{Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
+use crate::mesh::level_points::LevelPoints;
 use crate::solver::conjugate_gradients::dot;
 use crate::{GrainId, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
@@ -72,9 +73,9 @@ enum Mending {
 }
 
 /// Points at the end of a stage, those of the finest level, and the points that each place depends on that folds there.
-struct Ending {
+struct Ending<'a> {
     points: Vec<DVec3>,
-    surface: Vec<DVec3>,
+    surface: LevelPoints<'a>,
     places: Vec<Vec<u32>>,
 }
 
@@ -111,7 +112,13 @@ impl<'a> Flow<'a> {
         let copies = TiedPoints::new(&network.levels()[level]);
         let (patches, elements) = rayon::join(
             || Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent),
-            || LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface))),
+            || {
+                LevelElements::new(
+                    network,
+                    surface,
+                    &Adjacency::of_level(network.level_from_before(surface).held()),
+                )
+            },
         );
         check_cancelled();
         let unit = tuning.small_grain * network.mean_grain_size();
@@ -213,7 +220,7 @@ impl<'a> Flow<'a> {
             }
         }
         match (best.places.is_empty(), end) {
-            (true, End::Finished) => self.widen_all(&mut best.points, best.surface, finest),
+            (true, End::Finished) => self.widen_all(&mut best.points, &best.surface, finest),
             // What nothing mends here, finer points may.
             (true, _) | (false, End::Open) => {}
             (false, End::Volumes | End::Finished) => {
@@ -225,7 +232,7 @@ impl<'a> Flow<'a> {
     }
 
     /// The points of the finest level at the end of a stage.
-    fn surface_at_end(&self, points: &mut [DVec3], end: End) -> Result<Vec<DVec3>, NetworkError> {
+    fn surface_at_end(&self, points: &mut [DVec3], end: End) -> Result<LevelPoints<'a>, NetworkError> {
         match end {
             End::Open => Ok(self.finest_points(points)),
             End::Volumes | End::Finished => self.restored(points),
@@ -236,11 +243,7 @@ impl<'a> Flow<'a> {
     fn defects(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let residual = rms_residual(self.network, self.surface(), surface)?;
-        let folds = if self.surface == self.finest() {
-            finest.folds(surface)
-        } else {
-            finest.folds(&self.network.subdivide_between(self.surface, self.finest(), surface))
-        };
+        let folds = finest.folds(&self.network.points_between(self.surface, self.finest(), surface));
         Some(Defects { has_folds: !folds.is_empty(), residual })
     }
 
@@ -311,18 +314,18 @@ impl<'a> Flow<'a> {
     }
 
     /// The points of the finest level.
-    fn finest_points(&self, points: &[DVec3]) -> Vec<DVec3> {
-        self.network.subdivide_between(self.level, self.finest(), points)
+    fn finest_points(&self, points: &[DVec3]) -> LevelPoints<'a> {
+        self.network.points_between(self.level, self.finest(), points)
     }
 
     /// The points that each element depends on which is folded on the finest level, or has passed another.
-    fn folded_places(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<Vec<u32>> {
+    fn folded_places(&self, surface: &LevelPoints<'_>, finest: &LevelSectors<'_>) -> Vec<Vec<u32>> {
         let folds = finest.folds(surface).into_iter().flatten();
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
     /// The grains beside what is folded on the finest level, in order.
-    fn folded_grains(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<GrainId> {
+    fn folded_grains(&self, surface: &LevelPoints<'_>, finest: &LevelSectors<'_>) -> Vec<GrainId> {
         let level = self.network.finest();
         let folds = finest.folds(surface).into_iter().flatten();
         let sides =

@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::mesh::adjacency::{Adjacency, Incidence, by_edge_in_parallel};
+use crate::mesh::level_points::LevelPoints;
 use crate::{Elements, Side, Surface};
 
 /// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
@@ -17,16 +18,19 @@ pub(crate) struct DihedralSectors {
     dihedral_sectors: Vec<DihedralSector>,
 }
 
-/// An edge, held as little as may be: there are as many as the finest level has on triple lines, three times.
+/// An edge. Where elements are refined, it is that of the elements that hold their labels.
 struct DihedralSector {
-    elements: [u32; 2],
+    labelled: [u32; 2],
     /// The number of the edge in each element.
     edges: [u8; 2],
+    /// Whether the elements run along the edge one as the other.
+    is_alike: bool,
     /// 1 where the grain lies on the side that the first element's normal points to, -1 on the other.
     sense: i8,
 }
 
 impl DihedralSectors {
+    /// Those of a surface that is not refined.
     pub(crate) fn new(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Self {
         if let Elements::Segments(_) = surface.elements {
             return Self { dihedral_sectors: Vec::new() };
@@ -41,8 +45,9 @@ impl DihedralSectors {
             incidences.sort_unstable_by_key(|(side, at, _)| (*side, **at));
             let pairs = incidences.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
             let sectors = pairs.map(|pair| DihedralSector {
-                elements: [pair[0].1, pair[1].1].map(|at| at.element),
+                labelled: [pair[0].1, pair[1].1].map(|at| at.element),
                 edges: [pair[0].1, pair[1].1].map(|at| at.corner),
+                is_alike: pair[0].1.ends(surface.elements) == pair[1].1.ends(surface.elements),
                 sense: pair[0].2,
             });
             sectors.collect::<Vec<_>>()
@@ -53,11 +58,10 @@ impl DihedralSectors {
         Self { dihedral_sectors }
     }
 
-    /// The elements at edges where grains are turned inside out, among those of the surface.
-    pub(crate) fn turned(&self, elements: Elements<'_>, points: &[DVec3]) -> Vec<[u32; 2]> {
+    /// The elements at edges where grains are turned inside out, among those of the surface or what is refined from them.
+    pub(crate) fn turned(&self, points: &LevelPoints<'_>) -> Vec<[u32; 2]> {
         let sectors = self.dihedral_sectors.par_iter();
-        let turned = sectors.filter(|sector| is_turned(sector.opening(elements, points)));
-        turned.map(|sector| sector.elements).collect()
+        sectors.flat_map_iter(|sector| sector.turned(points)).collect()
     }
 }
 
@@ -67,14 +71,28 @@ fn is_turned([cosine, sine]: [f64; 2]) -> bool {
 }
 
 impl DihedralSector {
-    /// Cosine and sine of the grain's angle.
-    fn opening(&self, elements: Elements<'_>, points: &[DVec3]) -> [f64; 2] {
-        // The edge as the element runs along it, and what it has beside.
-        let corners = |k: usize| -> [DVec3; 3] {
-            let corners: [u32; 3] = elements.points(self.elements[k]);
-            [0, 1, 2].map(|turn| points[corners[(usize::from(self.edges[k]) + turn) % 3] as usize])
-        };
-        let [[start, end, first], [_, _, second]] = [0, 1].map(corners);
+    /// The elements at its edge, or those into which that is refined, where the grain is turned inside out.
+    fn turned(&self, points: &LevelPoints<'_>) -> Vec<[u32; 2]> {
+        let elements = points.elements();
+        let refined = elements.refined_triangle();
+        let own = self.labelled.map(|labelled| points.of(labelled));
+        let [along, mut other] =
+            self.edges.map(|edge| refined.along_edges[usize::from(edge)].iter().collect::<Vec<_>>());
+        if !self.is_alike {
+            other.reverse();
+        }
+        let places = along.into_iter().zip(other).filter(|(one, other)| {
+            let corners = |own: &[DVec3; 15], (place, edge): (usize, usize)| {
+                [0, 1, 2].map(|turn| own[refined.triangles[place][(edge + turn) % 3]])
+            };
+            is_turned(self.opening([corners(&own[0], **one), corners(&own[1], **other)]))
+        });
+        let in_places = |places: [usize; 2]| [0, 1].map(|k| elements.element_in(self.labelled[k], places[k]));
+        places.map(|(one, other)| in_places([one.0, other.0])).collect()
+    }
+
+    /// Cosine and sine of the grain's angle at two elements, given by the edge as each runs along it, and the corner beside it.
+    fn opening(&self, [[start, end, first], [_, _, second]]: [[DVec3; 3]; 2]) -> [f64; 2] {
         let along = (end - start).normalize_or_zero();
         let leg = |apex: DVec3| (apex - start).reject_from_normalized(along).normalize_or_zero();
         let [first, second] = [first, second].map(leg);
@@ -101,7 +119,7 @@ mod tests {
         let sides = network.sides();
         let dihedral_sectors =
             DihedralSectors::new(&Surface::of_level(level, &flat, &sides), &Adjacency::of_level(level));
-        assert!(dihedral_sectors.turned((&level.mesh).into(), &flat).is_empty());
+        assert!(dihedral_sectors.turned(&LevelPoints::held((&level.mesh).into(), &flat)).is_empty());
         // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
         let mut pushed = flat.clone();
         for point in &mut pushed {
@@ -109,6 +127,6 @@ mod tests {
                 *point = DVec3::new(0.95, 0.7, point.z);
             }
         }
-        assert!(!dihedral_sectors.turned((&level.mesh).into(), &pushed).is_empty());
+        assert!(!dihedral_sectors.turned(&LevelPoints::held((&level.mesh).into(), &pushed)).is_empty());
     }
 }

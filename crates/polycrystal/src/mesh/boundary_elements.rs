@@ -1,8 +1,10 @@
 use glam::DVec3;
-use subzero::{FaceId, HalfEdgeId, RefinedMesh};
+use subzero::{FaceId, HalfEdgeId, TriangleMesh};
 
 use crate::mesh::adjacency::{Adjacency, Inner};
+use crate::mesh::elements::normal;
 use crate::mesh::grouped::Grouped;
+use crate::mesh::level_points::LevelPoints;
 use crate::{BoundaryId, Elements, LevelView, Surface};
 
 /// The elements of each boundary.
@@ -65,10 +67,10 @@ impl<'a> BoundaryElements<'a> {
     }
 
     /// The normals of the elements of a boundary, as of [`Elements::normal`].
-    pub(crate) fn normals(&self, boundary: usize, points: &[DVec3]) -> Vec<DVec3> {
+    pub(crate) fn normals(&self, boundary: usize, points: &LevelPoints<'_>) -> Vec<DVec3> {
         let mut normals = Vec::with_capacity(self.count(boundary));
         for labelled in self.labelled(boundary) {
-            self.elements.for_each_normal_in(points, *labelled, |normal| normals.push(normal));
+            points.elements().for_each_in(&points.of(*labelled), |corners| normals.push(normal(corners)));
         }
         normals
     }
@@ -77,13 +79,13 @@ impl<'a> BoundaryElements<'a> {
 /// Which elements of a boundary are neighbours.
 pub(crate) enum BoundaryNeighbors<'a> {
     /// As they follow from the mesh of the labelled elements, which have these boundaries and indices in them.
-    OfMesh { mesh: RefinedMesh<'a>, boundary_of: &'a [BoundaryId], index_of: Vec<u32> },
+    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], index_of: Vec<u32> },
     /// Pairs of indices, boundary by boundary.
     Listed(Grouped<[u32; 2]>),
 }
 
 impl<'a> BoundaryNeighbors<'a> {
-    /// Those among elements that meet in these adjacency; the labelled ones have these boundaries.
+    /// Those among elements, of which those that hold labels have these boundaries and meet so.
     pub(crate) fn new(
         boundary_of: &'a [BoundaryId],
         boundaries: &BoundaryElements<'a>,
@@ -95,7 +97,7 @@ impl<'a> BoundaryNeighbors<'a> {
             (0u32..).zip(labelled).for_each(|(index, element)| index_of[*element as usize] = index);
         }
         match &adjacency.inner {
-            Inner::OfMesh { mesh, .. } => Self::OfMesh { mesh: *mesh, boundary_of, index_of },
+            Inner::OfMesh { mesh, .. } => Self::OfMesh { mesh: mesh.mesh(), boundary_of, index_of },
             Inner::Listed(pairs) => {
                 let pairs = pairs.iter().map(|pair| {
                     let boundary = boundary_of[pair[0] as usize].index();
@@ -119,21 +121,21 @@ impl<'a> BoundaryNeighbors<'a> {
             }
             Self::OfMesh { mesh, boundary_of, index_of } => (mesh, boundary_of, index_of),
         };
-        let refined = mesh.refined_triangle();
+        let refined = boundaries.elements.refined_triangle();
         let count = refined.triangles.len();
         let is_own = |triangle: FaceId| boundary_of[triangle.index()].index() == boundary;
         for (index, triangle) in boundaries.labelled(boundary).iter().enumerate() {
             let own = |place: usize| index * count + place;
             refined.neighbours.iter().for_each(|pair| look_at(pair.map(own)));
             for (h, along) in (3 * triangle..).map(HalfEdgeId).zip(refined.along_edges) {
-                let beyond = mesh.mesh().half_edge_beyond(h).filter(|beyond| *beyond > h);
+                let beyond = mesh.half_edge_beyond(h).filter(|beyond| *beyond > h);
                 let Some(beyond) = beyond.filter(|beyond| is_own(beyond.triangle())) else { continue };
                 let other = index_of[beyond.triangle().index()] as usize;
                 let against = refined.along_edges[(beyond.0 % 3) as usize].iter().rev();
                 along
                     .iter()
                     .zip(against)
-                    .for_each(|(here, there)| look_at([own(*here), other * count + there]));
+                    .for_each(|((here, _), (there, _))| look_at([own(*here), other * count + there]));
             }
         }
     }

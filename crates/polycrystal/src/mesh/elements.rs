@@ -149,24 +149,18 @@ impl<'a> Elements<'a> {
     #[inline]
     pub(crate) fn normal(self, points: &[DVec3], element: u32) -> DVec3 {
         let corners = self.corners(element);
-        let [a, b, c] = corners.points.map(|corner| points[corner as usize]);
-        match self {
-            Self::Triangles(_) | Self::Refined(_) => (b - a).cross(c - a),
-            Self::Segments(_) => (b - a).cross(DVec3::Z),
-        }
+        let count = corners.count;
+        normal(&corners.points.map(|corner| points[corner as usize])[..count])
     }
 
-    /// Looks at the normals of the elements in one that holds a label, in order of their places.
+    /// Looks at the corners of each element in one that holds a label, in order of their places, given where its vertices are.
     #[inline(always)]
-    pub(crate) fn for_each_normal_in(self, points: &[DVec3], labelled: u32, mut look_at: impl FnMut(DVec3)) {
+    pub(crate) fn for_each_in(self, own: &[DVec3; 15], mut look_at: impl FnMut(&[DVec3])) {
         if let Self::Segments(_) = self {
-            return look_at(self.normal(points, labelled));
+            return look_at(&own[..2]);
         }
-        let own = self.points_in(points, labelled);
-        for [a, b, c] in
-            self.refined_triangle().triangles.iter().map(|corners| corners.map(|corner| own[corner]))
-        {
-            look_at((b - a).cross(c - a));
+        for corners in self.refined_triangle().triangles {
+            look_at(&corners.map(|corner| own[corner]));
         }
     }
 
@@ -174,6 +168,19 @@ impl<'a> Elements<'a> {
     pub(crate) fn normals(self, points: &[DVec3]) -> Vec<DVec3> {
         let elements = 0..u32::try_from(self.len()).expect("ids fit 32 bits");
         elements.into_par_iter().map(|element| self.normal(points, element)).collect()
+    }
+}
+
+/// The normal of an element with these corners, as of [`Elements::normal`].
+///
+/// # Panics
+/// If there are neither three nor two.
+#[inline(always)]
+pub(crate) fn normal(corners: &[DVec3]) -> DVec3 {
+    match *corners {
+        [a, b, c] => (b - a).cross(c - a),
+        [a, b] => (b - a).cross(DVec3::Z),
+        _ => unreachable!("elements have two or three points"),
     }
 }
 

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{FaceId, TriangleMesh};
 use voronoi::Dimension;
 
 use crate::mesh::boundary_elements::BoundaryElements;
-use crate::{Boundary, GrainId, Level, Surface};
+use crate::mesh::elements::normal;
+use crate::mesh::level_points::LevelPoints;
+use crate::{Boundary, GrainId, Surface};
 
 /// Error of a volume, as a share of it, up to which it is restored.
 pub(crate) const VOLUME_RESTORED: f64 = 1e-12;
@@ -52,42 +53,28 @@ impl Cone {
 }
 
 /// Per boundary, the cone from a point of it.
-pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
-    let boundaries = BoundaryElements::new(surface);
-    let cones = (0..boundaries.boundary_count()).into_par_iter();
-    cones.map(|boundary| cone_of_boundary(surface, &boundaries.of(boundary))).collect()
-}
-
-/// Per boundary of a level in space, which has this mesh, the cone from a point of it to its surface two levels on, for the points one level on.
-pub(crate) fn refined_cones(
-    mesh: &TriangleMesh,
-    level: &Level,
-    boundary_count: usize,
-    points: &[DVec3],
-) -> Vec<Cone> {
-    let moved = mesh.loop_moved_beyond(points);
-    let boundaries = BoundaryElements::of_level(level, boundary_count);
+pub(crate) fn boundary_cones(boundaries: &BoundaryElements<'_>, points: &LevelPoints<'_>) -> Vec<Cone> {
+    let elements = points.elements();
     let of_boundary = |boundary: usize| {
         let mut sum = ElementSum::default();
-        for triangle in boundaries.of(boundary) {
-            let own = mesh.loop_points_beyond(FaceId(triangle), points, &moved);
-            for corners in TriangleMesh::TRIANGLES_BEYOND {
-                sum.add_triangle(corners.map(|corner| own[corner]));
-            }
+        for labelled in boundaries.labelled(boundary) {
+            elements.for_each_in(&points.of(*labelled), |corners| {
+                sum.add(corners);
+            });
         }
-        sum.cone(Dimension::Three)
+        sum.cone(elements.dimension())
     };
-    (0..boundary_count).into_par_iter().map(of_boundary).collect()
+    (0..boundaries.boundary_count()).into_par_iter().map(of_boundary).collect()
 }
 
 /// The cone from the first point of some elements to them.
 pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: &[u32]) -> Cone {
-    let at = |vertex: u32| surface.points[vertex as usize];
     let mut sum = ElementSum::default();
     for element in elements {
-        match *surface.elements.corners(*element) {
-            [a, b, c] => sum.add_triangle([a, b, c].map(at)),
-            [a, b] => sum.add_segment([a, b].map(at)),
+        let corners = surface.elements.corners(*element);
+        match *corners {
+            [a, b, c] => sum.add(&[a, b, c].map(|vertex| surface.points[vertex as usize])),
+            [a, b] => sum.add(&[a, b].map(|vertex| surface.points[vertex as usize])),
             _ => unreachable!("elements have two or three points"),
         };
     }
@@ -104,23 +91,15 @@ pub(crate) struct ElementSum {
 }
 
 impl ElementSum {
-    /// Adds a triangle, and gives its normal, as long as twice its area.
-    #[inline]
-    pub(crate) fn add_triangle(&mut self, corners: [DVec3; 3]) -> DVec3 {
+    /// Adds the element with these corners, and gives its normal, as of [`Elements::normal`](crate::Elements::normal).
+    #[inline(always)]
+    pub(crate) fn add(&mut self, corners: &[DVec3]) -> DVec3 {
         let apex = *self.apex.get_or_insert(corners[0]);
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a);
-        self.volume += (a - apex).dot(normal) / 6.0;
-        self.normal += normal;
-        normal
-    }
-
-    /// Adds a segment in the plane, and gives its normal, as long as it is.
-    pub(crate) fn add_segment(&mut self, ends: [DVec3; 2]) -> DVec3 {
-        let apex = *self.apex.get_or_insert(ends[0]);
-        let [a, b] = ends;
-        let normal = (b - a).cross(DVec3::Z);
-        self.volume += segment_area([a - apex, b - apex]);
+        let normal = normal(corners);
+        self.volume += match *corners {
+            [a, b] => segment_area([a - apex, b - apex]),
+            _ => (corners[0] - apex).dot(normal) / 6.0,
+        };
         self.normal += normal;
         normal
     }
@@ -191,7 +170,8 @@ mod tests {
                     let [given, finest] =
                         [from, to].map(|level| network.subdivide_between(0, level, &points));
                     let expected = network.grain_volumes(network.level(to), &finest);
-                    let volumes = network.grain_volumes_between(from, to, &given);
+                    let volumes = network
+                        .volumes_of(network.level_from_before(to), &network.points_between(from, to, &given));
                     let far = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() > 1e-13;
                     assert_eq!(volumes.iter().zip(&expected).position(far), None, "{from} to {to}");
                 }
@@ -209,8 +189,11 @@ mod tests {
         let boundary_of = [0, 1, 2, 3].map(BoundaryId);
         let sides = [[Side::Grain(GrainId(0)), Side::Exterior]; 4];
         let elements = Elements::Triangles(&triangles);
-        let cones =
-            boundary_cones(&Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides });
+        let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
+        let cones = boundary_cones(
+            &BoundaryElements::new(&surface),
+            &LevelPoints::held(surface.elements, surface.points),
+        );
         let boundaries = sides.map(|sides| Boundary { sides, wall: None, twin: None });
         let volume = volumes_of_grains(&boundaries, &cones, 1)[0];
         assert!((volume / (size.powi(3) / 6.0) - 1.0).abs() < 1e-15, "{volume}");

@@ -13,6 +13,7 @@ use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::tied_points::Numbering;
 use crate::mesh::fold::{LARGEST_FOLD, are_apart, is_folded};
+use crate::mesh::level_points::LevelPoints;
 use crate::mesh::rounding;
 use crate::mesh::volume::volumes_of_grains;
 use crate::{Freedom, NetworkError, Volumes};
@@ -123,9 +124,11 @@ impl Flow<'_> {
             Volumes::Kept => LARGEST_FOLD,
             Volumes::Free => -1.0,
         };
-        let LevelElements { boundaries, neighbors, .. } = &self.elements;
+        let LevelElements { boundaries, neighbors } = &self.elements;
+        let elements = self.network.level_from_before(self.surface).elements();
+        let [before, after] = [before, after].map(|points| LevelPoints::held(elements, points));
         let of_boundary = |boundary: usize| {
-            let [before, after] = [before, after].map(|points| boundaries.normals(boundary, points));
+            let [before, after] = [&before, &after].map(|points| boundaries.normals(boundary, points));
             let is_turned =
                 |index: &usize| are_apart([&before, &after].map(|normals| normals[*index]), LARGEST_FOLD);
             let of_pair = |normals: &[DVec3], pair: [usize; 2]| pair.map(|index| normals[index]);

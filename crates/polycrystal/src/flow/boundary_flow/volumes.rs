@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::flow::assembly::pressure_response;
 use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
+use crate::mesh::level_points::LevelPoints;
 use crate::mesh::rounding::{last_place, swept_by_rounding};
 use crate::mesh::volume::{VOLUME_LIMIT, VOLUME_RESTORED, largest_relative_error};
 use crate::{GrainId, Network, NetworkError, Volumes};
@@ -17,9 +18,9 @@ const LARGEST_GAIN: f64 = 2.0;
 /// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
 const VOLUME_STEPS: usize = 40;
 
-impl Flow<'_> {
+impl<'a> Flow<'a> {
     /// Makes volumes right where that is asked for; gives the points of the finest level.
-    pub(crate) fn restored(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+    pub(crate) fn restored(&self, points: &mut [DVec3]) -> Result<LevelPoints<'a>, NetworkError> {
         if self.volumes == Volumes::Kept {
             self.restore_volumes(points)?;
         }
@@ -63,8 +64,7 @@ impl Flow<'_> {
         let mut step = 0;
         loop {
             check_cancelled();
-            let missing =
-                self.missing(&self.network.grain_volumes_between(self.level, self.finest(), points));
+            let missing = self.missing(&volumes_at_end(self.network, self.level, points));
             let (grain, relative_error) = self.largest_error(&missing);
             let mut stalled = false;
             if let Some(last) = &last {
@@ -73,7 +73,7 @@ impl Flow<'_> {
                 gain = (gain / (1.0 - left)).clamp(1.0 / LARGEST_GAIN, LARGEST_GAIN);
             }
             let is_right = relative_error <= VOLUME_RESTORED
-                || stalled && is_rounding(self.network, &missing, &self.finest_points(points));
+                || stalled && is_rounding(self.network, &missing, self.level, points);
             if is_right {
                 return Ok(());
             }
@@ -103,11 +103,15 @@ impl Flow<'_> {
 
 /// Whether grains have the volumes of their cells on the finest level, up to rounding, for the points of a level.
 pub(crate) fn has_kept_volumes(network: &Network, level: usize, points: &[DVec3]) -> bool {
-    let finest = network.level_count();
-    let missing = missing_volumes(network, &network.grain_volumes_between(level, finest, points));
+    let missing = missing_volumes(network, &volumes_at_end(network, level, points));
     let (_, relative_error) = largest_relative_error(&missing, network.cell_volumes());
-    relative_error <= VOLUME_LIMIT
-        || is_rounding(network, &missing, &network.subdivide_between(level, finest, points))
+    relative_error <= VOLUME_LIMIT || is_rounding(network, &missing, level, points)
+}
+
+/// The volumes of grains on the finest level, for the points of a level.
+fn volumes_at_end(network: &Network, level: usize, points: &[DVec3]) -> Vec<f64> {
+    let finest = network.level_count();
+    network.volumes_of(network.level_from_before(finest), &network.points_between(level, finest, points))
 }
 
 /// What each grain's volume lacks.
@@ -116,9 +120,10 @@ fn missing_volumes(network: &Network, volumes: &[f64]) -> Vec<f64> {
 }
 
 /// Whether rounding may be all that volumes lack: that of the points themselves, and what else is accepted.
-fn is_rounding(network: &Network, missing: &[f64], surface: &[DVec3]) -> bool {
-    let areas = network.grain_areas(network.finest(), surface);
-    let rounding = last_place(surface);
+fn is_rounding(network: &Network, missing: &[f64], level: usize, points: &[DVec3]) -> bool {
+    let surface = network.subdivide_between(level, network.level_count(), points);
+    let areas = network.grain_areas(network.finest(), &surface);
+    let rounding = last_place(&surface);
     let mut grains = missing.iter().zip(network.cell_volumes().iter().zip(areas));
     grains
         .all(|(lack, (volume, area))| lack.abs() <= VOLUME_LIMIT * volume + swept_by_rounding(rounding, area))

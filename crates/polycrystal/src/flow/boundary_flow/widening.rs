@@ -11,8 +11,9 @@ use crate::flow::boundary_flow::{Flow, LevelSectors, Room};
 use crate::flow::thin_triangles::{STEPS, Widened};
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::id::id;
+use crate::mesh::level_points::LevelPoints;
 use crate::mesh::triangle_quality::squared_sine;
-use crate::{BoundaryId, Elements, Mesh, TriangleQuality, Volumes};
+use crate::{BoundaryId, Mesh, TriangleQuality, Volumes};
 
 /// Smallest angle, in units of the bound, that thin triangles are brought to: the volumes, which are made right after that, take some of it.
 const WIDE: f64 = 1.15;
@@ -26,17 +27,20 @@ enum Moving {
     Lines,
 }
 
-impl Flow<'_> {
+impl<'a> Flow<'a> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level. Points on lines move as long
     /// as that leaves fewer of them.
-    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, surface: Vec<DVec3>, finest: &LevelSectors<'_>) {
+    pub(super) fn widen_all(
+        &self,
+        points: &mut Vec<DVec3>,
+        surface: &LevelPoints<'_>,
+        finest: &LevelSectors<'_>,
+    ) {
         // Where grains grow, what that does to volumes would count as growth.
         if self.volumes != Volumes::Kept {
             return;
         }
-        let mut thin = self.thin_triangles(&surface);
-        // What is tried has a surface of its own: on the finest level there is room for one.
-        drop(surface);
+        let mut thin = self.thin_triangles(surface);
         let mut budget = self.tuning.widening * self.network.levels()[self.level].element_count() as f64;
         let mut moving = Moving::Inside;
         while !thin.is_empty() {
@@ -64,7 +68,7 @@ impl Flow<'_> {
         mut moved: Vec<DVec3>,
         groups: &[Vec<u32>],
         finest: &LevelSectors<'_>,
-    ) -> Option<(Vec<DVec3>, Vec<DVec3>)> {
+    ) -> Option<(Vec<DVec3>, LevelPoints<'a>)> {
         for _ in 0..2 {
             let mut right = moved.clone();
             let restored = self.restored(&mut right).ok()?;
@@ -80,19 +84,26 @@ impl Flow<'_> {
     }
 
     /// Triangles of the finest level, the thinnest first: no order that depends on numbers.
-    fn thin_triangles(&self, surface: &[DVec3]) -> Vec<u32> {
-        let elements = self.network.finest().elements();
-        if let Elements::Segments(_) = elements {
-            return Vec::new();
-        }
+    fn thin_triangles(&self, surface: &LevelPoints<'_>) -> Vec<u32> {
         let bound = sine(1.0).powi(2);
-        let squared_sine =
-            |triangle: u32| squared_sine(elements.points(triangle).map(|corner| surface[corner as usize]));
-        let mut thin: Vec<(f64, u32)> = (0..id(elements.len()))
-            .into_par_iter()
-            .map(|triangle| (squared_sine(triangle), triangle))
-            .filter(|(squared_sine, _)| *squared_sine < bound)
-            .collect();
+        let elements = surface.elements();
+        let labelled = self.network.level_from_before(self.finest()).labels().len();
+        let of_labelled = |labelled: u32| {
+            let mut thin = Vec::new();
+            let mut place = 0;
+            elements.for_each_in(&surface.of(labelled), |corners| {
+                if let [a, b, c] = *corners {
+                    let squared_sine = squared_sine([a, b, c]);
+                    if squared_sine < bound {
+                        thin.push((squared_sine, elements.element_in(labelled, place)));
+                    }
+                }
+                place += 1;
+            });
+            thin
+        };
+        let mut thin: Vec<(f64, u32)> =
+            (0..id(labelled)).into_par_iter().flat_map_iter(of_labelled).collect();
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         thin.into_iter().map(|(_, triangle)| triangle).collect()
     }
