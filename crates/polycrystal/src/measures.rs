@@ -83,11 +83,11 @@ pub fn measure(surface: &Surface<'_>) -> Measures {
 /// # Panics
 /// When there is not one point per vertex.
 pub fn measure_network(network: &Network, points: &[DVec3]) -> Measures {
-    let level = network.finest_level();
+    let level = network.finest();
     assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
     let sides = network.sides();
-    let surface = Surface::of_level(&*level, points, &sides);
-    of_complex(&Complex::of_level(network, (&*level).into(), &surface))
+    let surface = Surface::of_level(level, points, &sides);
+    of_complex(&Complex::of_level(network, level, &surface))
 }
 
 /// The smallest and the largest dihedral angle of the triple lines (in the plane: of the triple point) at each point, in

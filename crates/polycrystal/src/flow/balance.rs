@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::events::reconnection::SHORT;
-use crate::{Network, SpaceMeasures, TripleLineMeasures, measure_network};
+use crate::measures::Complex;
+use crate::measures::lines::{Line, Lines};
+use crate::{Network, Surface};
 
 /// How near to equilibrium a network is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,10 +39,14 @@ impl Balance {
     /// That of a network in space.
     pub(crate) fn in_space(network: &Network, points: &[DVec3]) -> Self {
         let short = SHORT * network.feature_size();
-        let measures = measure_network(network, points).in_space();
-        let SpaceMeasures { triple_lines, .. } = measures.expect("a network in space");
-        let is_short = |line: &TripleLineMeasures| !line.is_closed && line.length < short;
-        let lines = triple_lines.iter();
-        Self::of_lines(lines.map(|line| (is_short(line) || line.boundaries.len() > 3, line.residual)))
+        let sides = network.sides();
+        let level = network.finest();
+        let complex = Complex::of_level(network, level, &Surface::of_level(level, points, &sides));
+        let lines = Lines::of(&complex).lines;
+        let is_short = |line: &Line<'_>| !line.is_closed && line.length(&complex.surface) < short;
+        let lines = lines.iter().filter(|line| line.boundaries.len() >= 3);
+        Self::of_lines(
+            lines.map(|line| (is_short(line) || line.boundaries.len() > 3, complex.residual_of_line(line))),
+        )
     }
 }

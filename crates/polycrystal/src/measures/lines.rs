@@ -1,9 +1,10 @@
 use rayon::prelude::*;
 
-use crate::BoundaryId;
 use crate::measures::complex::Complex;
 use crate::mesh::adjacency::Incidence;
+use crate::mesh::angles::edge_length;
 use crate::mesh::grouped::Grouped;
+use crate::{BoundaryId, Surface};
 
 /// The curves along which the same boundaries meet, triple lines and edges of the domain, and the points where they end.
 pub(crate) struct Lines<'a> {
@@ -22,6 +23,13 @@ pub(crate) struct Line<'a> {
     pub(crate) is_closed: bool,
     /// The boundaries that meet in it, sorted; one that meets itself comes twice.
     pub(crate) boundaries: Vec<BoundaryId>,
+}
+
+impl Line<'_> {
+    /// Its length on a surface.
+    pub(crate) fn length(&self, surface: &Surface<'_>) -> f64 {
+        self.edges.iter().map(|at| edge_length(surface, at)).sum()
+    }
 }
 
 impl<'a> Lines<'a> {
