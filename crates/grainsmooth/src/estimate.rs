@@ -8,7 +8,7 @@ use voronoi::Dimension;
 
 use crate::formats::format::FileSize;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels, in_words};
-use crate::run::pipeline::voxel_bytes;
+use crate::run::pipeline::{motion, voxel_bytes};
 use crate::{Config, Error, OutputFormat, PeriodicCut, Tessellated};
 
 /// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, and in space where cells are
@@ -48,7 +48,7 @@ impl Estimate {
                 let MeshSize { points, edges, triangles } =
                     config.regular_face_mesh().control_mesh_size(&regular);
                 let size = LevelSize { points, edges, triangles };
-                ControlMesh { size, arcs: 0, besides: voxel_bytes(config), is_still: false }
+                ControlMesh { size, arcs: 0, besides: voxel_bytes(config), motion: motion(config) }
             }
             _ => crate::run::pipeline::control_mesh(config, tessellation),
         };

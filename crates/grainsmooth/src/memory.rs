@@ -5,9 +5,9 @@ use std::path::Path;
 use sysinfo::{MemoryRefreshKind, System};
 
 /// Bytes that a run in space holds at its peak. Fitted to peak resident memory, in millions of bytes and brackets what comes of it: 200 grains took 42 (43),
-/// 79 (89) and 168 (175) at levels 1, 3 and 4, 500 grains 167 (170) at level 3, 1000 grains 147 (141) and 235 (237) at levels 1 and 2, 2000 grains 92 (93),
-/// 255 (268), 475 (463) and 432 (428) at levels 0 to 3, 20 000 grains 756 (781), 2437 (2592) and 3330 (3820) at levels 0, 1 and 3, 100 000 grains 3650 (3873) at
-/// level 0. To equilibrium, where level 2 moves too, grains take two to four times as much.
+/// 50 (51) and 109 (102) at levels 1, 3 and 4, 300 grains 475 (465) at level 5, 500 grains 106 (100) and 250 (234) at levels 3 and 4, 1000 grains 151 (141), 225 (238),
+/// 196 (183) and 439 (454) at levels 1 to 4, 2000 grains 93 (93), 255 (268), 470 (466) and 354 (353) at levels 0 to 3, 20 000 grains 754 (781), 2437 (2592) and
+/// 2970 (3350) at levels 0, 1 and 3, 100 000 grains 3650 (3873) at level 0.
 ///
 /// The program itself ...
 const PROGRAM: u128 = 20_000_000;
@@ -22,22 +22,22 @@ const RELAXED_PER_TRIANGLE_MOVED: u128 = 190;
 const RELAXED_PER_TRIANGLE_REFINED: u128 = 94;
 const ENERGY_LEVEL: u32 = 2;
 
-/// Where nothing moves, through level 2: for each edge of the control mesh, and each triangle of the last level if that is another. 5000 grains took 134 (109),
-/// 268 (242) and 689 (642) at levels 0 to 2, 20 000 grains 846 (926) at level 1, 100 000 grains 1910 (2148) at level 0.
+/// To equilibrium, where level 2 moves too and level 3 carries its energy, for each edge of the control mesh at levels 1, 2 and further ones. 500 grains took 84 (88),
+/// 259 (251), 357 (352) and 370 (352) at levels 1 to 4, 200 grains 102 (109) at level 2, 1000 grains 671 (696) at level 3, 2000 grains 312 (304) at level 1.
+const AT_REST_PER_CONTROL_EDGE: [u128; 3] = [1620, 5500, 7900];
+
+/// Where nothing moves, through level 2: for each edge of the control mesh, and each triangle of the last level if that is another. 5000 grains took 125 (109),
+/// 244 (242) and 690 (642) at levels 0 to 2, 20 000 grains 916 (926) at level 1, 100 000 grains 1870 (1855) at level 0.
 const STILL_PER_CONTROL_EDGE: u128 = 200;
 const STILL_PER_TRIANGLE: u128 = 100;
 
 /// From level 3 on, the certificate takes the most: for each edge of the control mesh the levels that are held, with those of relaxation where points move (still, 5000
-/// grains took 717 (832) at level 3) ...
-const CERTIFIED_PER_CONTROL_EDGE: u128 = 870;
-const CERTIFIED_PER_CONTROL_EDGE_STILL: u128 = 500;
+/// grains took 618 (617) at level 3) ...
+const CERTIFIED_PER_CONTROL_EDGE: u128 = 850;
+const CERTIFIED_PER_CONTROL_EDGE_STILL: u128 = 290;
 
-/// ... for each triangle of the last level its points and what is known of them ...
-const CERTIFIED_PER_TRIANGLE: u128 = 25;
-
-/// ... and what is searched for crossings at a time, of each triangle and so many.
-const SEARCHED_PER_TRIANGLE: u128 = 45;
-const SEARCHED_TRIANGLES: u128 = 1_400_000;
+/// ... and for each triangle of the last level its points.
+const CERTIFIED_PER_TRIANGLE: u128 = 22;
 
 /// Bytes that a run in the plane holds at its peak for each point and segment of its last level, and each segment of the first. Up to 5 % above peak resident
 /// memory: 20 000 grains took 1862 MB at level 6, and in equilibrium at level 3 1196 MB, 2000 grains 128 MB.
@@ -181,13 +181,24 @@ pub struct ControlMesh {
     pub arcs: u128,
     /// Bytes that are taken besides the network, for voxels.
     pub besides: u128,
-    /// Whether boundaries stay as flat as the cells.
-    pub is_still: bool,
+    /// How far its points move.
+    pub motion: Motion,
+}
+
+/// How far the points of a network move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Not at all.
+    Still,
+    /// For a time.
+    Timed,
+    /// Until they are at rest.
+    ToRest,
 }
 
 impl From<LevelSize> for ControlMesh {
     fn from(size: LevelSize) -> Self {
-        Self { size, arcs: 0, besides: 0, is_still: false }
+        Self { size, arcs: 0, besides: 0, motion: Motion::Timed }
     }
 }
 
@@ -217,27 +228,24 @@ impl ControlMesh {
                 (edges, of_control),
             ]);
         }
-        let parts: &[(u128, u128)] = match levels {
-            0 if self.is_still => &[(edges, STILL_PER_CONTROL_EDGE)],
-            0 => &[(edges, RELAXED_PER_CONTROL_EDGE)],
-            1..=ENERGY_LEVEL if self.is_still => {
-                &[(edges, STILL_PER_CONTROL_EDGE), (size.triangles, STILL_PER_TRIANGLE)]
+        let peak = |of_edge, of_triangle| sum(&[(edges, of_edge), (size.triangles, of_triangle)]);
+        let [rest_1, rest_2, rest] = AT_REST_PER_CONTROL_EDGE;
+        let certified = |of_edge| peak(of_edge, CERTIFIED_PER_TRIANGLE);
+        let bytes = match (self.motion, levels) {
+            (Motion::Still, 0) => peak(STILL_PER_CONTROL_EDGE, 0),
+            (Motion::Still, 1..=ENERGY_LEVEL) => peak(STILL_PER_CONTROL_EDGE, STILL_PER_TRIANGLE),
+            (Motion::Still, _) => certified(CERTIFIED_PER_CONTROL_EDGE_STILL),
+            (Motion::Timed | Motion::ToRest, 0) => peak(RELAXED_PER_CONTROL_EDGE, 0),
+            (Motion::Timed, 1) => peak(RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE_MOVED),
+            (Motion::Timed, ENERGY_LEVEL) => {
+                peak(RELAXED_PER_CONTROL_EDGE_REFINED, RELAXED_PER_TRIANGLE_REFINED)
             }
-            1 => &[(edges, RELAXED_PER_CONTROL_EDGE_MOVED), (size.triangles, RELAXED_PER_TRIANGLE_MOVED)],
-            ENERGY_LEVEL => {
-                &[(edges, RELAXED_PER_CONTROL_EDGE_REFINED), (size.triangles, RELAXED_PER_TRIANGLE_REFINED)]
-            }
-            _ => {
-                let of_control =
-                    if self.is_still { CERTIFIED_PER_CONTROL_EDGE_STILL } else { CERTIFIED_PER_CONTROL_EDGE };
-                &[
-                    (edges, of_control),
-                    (size.triangles, CERTIFIED_PER_TRIANGLE),
-                    (size.triangles.min(SEARCHED_TRIANGLES), SEARCHED_PER_TRIANGLE),
-                ]
-            }
+            (Motion::Timed, _) => certified(CERTIFIED_PER_CONTROL_EDGE),
+            (Motion::ToRest, 1) => peak(rest_1, 0),
+            (Motion::ToRest, ENERGY_LEVEL) => peak(rest_2, 0),
+            (Motion::ToRest, _) => peak(rest, 0).max(certified(CERTIFIED_PER_CONTROL_EDGE)),
         };
-        sum(parts).saturating_add(PROGRAM)
+        bytes.saturating_add(PROGRAM)
     }
 }
 
@@ -361,7 +369,7 @@ mod tests {
         size: LevelSize { points: 4, edges: 6, triangles: 4 },
         arcs: 0,
         besides: 0,
-        is_still: false,
+        motion: Motion::Timed,
     };
 
     #[test]
@@ -383,7 +391,7 @@ mod tests {
     #[test]
     fn arcs_have_as_many_segments_on_any_level() {
         let lines = LevelSize { points: 500, edges: 600, triangles: 0 };
-        let arcs = ControlMesh { size: lines, arcs: 300, besides: 0, is_still: false };
+        let arcs = ControlMesh { size: lines, arcs: 300, besides: 0, motion: Motion::Timed };
         assert_eq!(arcs.after(0), LevelSize { points: 500 + 300 * 58, edges: 300 * 60, triangles: 0 });
         assert_eq!(arcs.after(3).edges, 300 * 64);
         for level in [5, 20, u32::MAX] {
@@ -465,7 +473,7 @@ mod tests {
         let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
         assert_eq!(
             message(9, 8_000_000_000),
-            "9 levels would take 91.9 GB of memory and 8.0 GB are available; 7 levels would fit"
+            "9 levels would take 80.8 GB of memory and 8.0 GB are available; 7 levels would fit"
         );
         assert_eq!(
             message(200, 8_000_000_000),
@@ -473,7 +481,7 @@ mod tests {
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 100.1 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
+            "3 levels would take 56.7 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),

@@ -16,7 +16,7 @@ use super::origin::{Measurement, SmoothedMap};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use crate::maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap};
-use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
+use crate::memory::{ControlMesh, LevelSize, Motion, available_memory, check_levels};
 use crate::{
     Error, FileOptions, GrainAttributes, GrainPhases, GrainTexture, MapNetworkOptions, MeasuredAttributes,
 };
@@ -129,7 +129,8 @@ impl Polycrystal {
             })?;
         }
         if options.levels > 0 {
-            let control_mesh = ControlMesh { is_still: true, ..size(self.network.control_mesh()).into() };
+            let control_mesh =
+                ControlMesh { motion: Motion::Still, ..size(self.network.control_mesh()).into() };
             check_levels(control_mesh, options.levels, available_memory())?;
             progress(Stage::Subdivision, 0, 1);
             let start = Instant::now();

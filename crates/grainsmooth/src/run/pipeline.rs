@@ -17,7 +17,7 @@ use super::tessellated::{Tessellated, grain_volumes, tessellate};
 use super::topology::Topology;
 use crate::error::failure::Growth;
 use crate::figures::significant::two_digits_down;
-use crate::memory::{ControlMesh, LABEL_BYTES, LevelSize, available_memory, check_levels};
+use crate::memory::{ControlMesh, LABEL_BYTES, LevelSize, Motion, available_memory, check_levels};
 use crate::seeds::count::seed_count;
 use crate::{BoundaryLaw, Config, Error, Failure};
 
@@ -49,7 +49,7 @@ pub fn check_expected_size(config: &Config) -> Result<(), Error> {
     // Each of two segments.
     let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
     Ok(check_levels(
-        ControlMesh { size, arcs, besides: voxel_bytes(config), is_still: is_still(config) },
+        ControlMesh { size, arcs, besides: voxel_bytes(config), motion: motion(config) },
         config.levels,
         available_memory(),
     )?)
@@ -65,17 +65,22 @@ pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> Cont
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     let size = LevelSize { points, edges, triangles };
     let besides = voxel_bytes(config);
-    let is_still = is_still(config);
+    let motion = motion(config);
     if !bends_to_arcs(config) {
-        return ControlMesh { size, arcs: 0, besides, is_still };
+        return ControlMesh { size, arcs: 0, besides, motion };
     }
     let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
     let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
-    ControlMesh { size, arcs: inside.count() as u128, besides, is_still }
+    ControlMesh { size, arcs: inside.count() as u128, besides, motion }
 }
 
-fn is_still(config: &Config) -> bool {
-    config.effective_relaxation() == Relaxation::Time(0.0)
+/// How far points move.
+pub(crate) fn motion(config: &Config) -> Motion {
+    match config.effective_relaxation() {
+        Relaxation::Equilibrium => Motion::ToRest,
+        Relaxation::Time(0.0) => Motion::Still,
+        Relaxation::Time(_) => Motion::Timed,
+    }
 }
 
 /// Bytes that voxels take while they are labelled.
