@@ -11,6 +11,7 @@ use crate::check::intersections::{Extent, bounds_in};
 use crate::check::normal_cone::NormalCone;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
+use crate::mesh::level_points::LevelPoints;
 use crate::mesh::triangle_quality::{SmallestAngles, squared_sine};
 use crate::mesh::volume::{Cone, ElementSum};
 use crate::{Surface, TriangleQuality};
@@ -94,13 +95,13 @@ impl Surveyed {
     ) -> Self {
         let elements = surface.elements;
         let dimension = elements.dimension();
+        let points = LevelPoints::held(elements, surface.points);
         let mut bounds = Bounds::default();
         let mut normals = Vec::with_capacity(boundaries.count(boundary));
         let mut sum = ElementSum::default();
         for labelled in boundaries.labelled(boundary) {
-            let own = elements.points_in(surface.points, *labelled);
             bounds = bounds.with(bounds_in(surface, *labelled));
-            elements.for_each_in(&own, |corners| {
+            points.for_each_in(*labelled, |corners| {
                 if let [a, b, c] = *corners {
                     angles.add(squared_sine([a, b, c]));
                 }

@@ -181,9 +181,8 @@ impl Search<'_> {
     /// Looks at the boxes around the triangles that come from one that holds a label, by their places.
     #[inline(always)]
     fn for_each_in(&self, labelled: u32, mut look_at: impl FnMut(usize, Bounds)) {
-        let Surface { elements, points, .. } = *self.surface;
         let mut place = 0;
-        elements.for_each_in(&elements.points_in(points, labelled), |corners| {
+        LevelPoints::held(self.surface.elements, self.surface.points).for_each_in(labelled, |corners| {
             look_at(place, Bounds::around(corners.iter().copied()));
             place += 1;
         });

@@ -70,7 +70,7 @@ impl<'a> BoundaryElements<'a> {
     pub(crate) fn normals(&self, boundary: usize, points: &LevelPoints<'_>) -> Vec<DVec3> {
         let mut normals = Vec::with_capacity(self.count(boundary));
         for labelled in self.labelled(boundary) {
-            points.elements().for_each_in(&points.of(*labelled), |corners| normals.push(normal(corners)));
+            points.for_each_in(*labelled, |corners| normals.push(normal(corners)));
         }
         normals
     }

@@ -115,18 +115,6 @@ impl<'a> Elements<'a> {
         }
     }
 
-    /// Where these vertices are; in place of more than there are is the origin.
-    #[inline(always)]
-    pub(crate) fn points_in(self, points: &[DVec3], labelled: u32) -> [DVec3; 15] {
-        let mut own = [DVec3::ZERO; 15];
-        let mut count = 0;
-        self.for_each_vertex_in(labelled, |vertex| {
-            own[count] = points[vertex as usize];
-            count += 1;
-        });
-        own
-    }
-
     /// The element at a place in one that holds a label.
     #[inline]
     pub(crate) fn element_in(self, labelled: u32, place: usize) -> u32 {
@@ -151,17 +139,6 @@ impl<'a> Elements<'a> {
         let corners = self.corners(element);
         let count = corners.count;
         normal(&corners.points.map(|corner| points[corner as usize])[..count])
-    }
-
-    /// Looks at the corners of each element in one that holds a label, in order of their places, given where its vertices are.
-    #[inline(always)]
-    pub(crate) fn for_each_in(self, own: &[DVec3; 15], mut look_at: impl FnMut(&[DVec3])) {
-        if let Self::Segments(_) = self {
-            return look_at(&own[..2]);
-        }
-        for corners in self.refined_triangle().triangles {
-            look_at(&corners.map(|corner| own[corner]));
-        }
     }
 
     /// The normals of all elements.

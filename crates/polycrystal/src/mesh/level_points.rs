@@ -39,13 +39,40 @@ impl<'a> LevelPoints<'a> {
         self.elements
     }
 
-    /// Those in an element that holds a label, as of [`Elements::points_in`].
+    /// Those in an element that holds a label, in the order of [`Elements::for_each_vertex_in`]; in place of more than there are is the origin.
     #[inline(always)]
     pub(crate) fn of(&self, labelled: u32) -> [DVec3; 15] {
         match &self.points {
-            Points::Held(points) => self.elements.points_in(points, labelled),
+            Points::Held(points) => {
+                let mut own = [DVec3::ZERO; 15];
+                let mut count = 0;
+                self.elements.for_each_vertex_in(labelled, |vertex| {
+                    own[count] = points[vertex as usize];
+                    count += 1;
+                });
+                own
+            }
             Points::Following { mesh, before, moved } => {
                 mesh.loop_points_beyond(FaceId(labelled), before, moved)
+            }
+        }
+    }
+
+    /// Looks at the corners of each element in one that holds a label, in order of their places.
+    #[inline(always)]
+    pub(crate) fn for_each_in(&self, labelled: u32, mut look_at: impl FnMut(&[DVec3])) {
+        match (self.elements, &self.points) {
+            (Elements::Triangles(triangles), Points::Held(points)) => {
+                look_at(&triangles[labelled as usize].map(|corner| points[corner as usize]));
+            }
+            (Elements::Segments(segments), Points::Held(points)) => {
+                look_at(&segments[labelled as usize].map(|end| points[end as usize]));
+            }
+            _ => {
+                let own = self.of(labelled);
+                for corners in self.elements.refined_triangle().triangles {
+                    look_at(&corners.map(|corner| own[corner]));
+                }
             }
         }
     }

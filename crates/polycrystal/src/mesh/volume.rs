@@ -54,15 +54,15 @@ impl Cone {
 
 /// Per boundary, the cone from a point of it.
 pub(crate) fn boundary_cones(boundaries: &BoundaryElements<'_>, points: &LevelPoints<'_>) -> Vec<Cone> {
-    let elements = points.elements();
+    let dimension = points.elements().dimension();
     let of_boundary = |boundary: usize| {
         let mut sum = ElementSum::default();
         for labelled in boundaries.labelled(boundary) {
-            elements.for_each_in(&points.of(*labelled), |corners| {
+            points.for_each_in(*labelled, |corners| {
                 sum.add(corners);
             });
         }
-        sum.cone(elements.dimension())
+        sum.cone(dimension)
     };
     (0..boundaries.boundary_count()).into_par_iter().map(of_boundary).collect()
 }

@@ -91,7 +91,7 @@ impl<'a> Flow<'a> {
         let of_labelled = |labelled: u32| {
             let mut thin = Vec::new();
             let mut place = 0;
-            elements.for_each_in(&surface.of(labelled), |corners| {
+            surface.for_each_in(labelled, |corners| {
                 if let [a, b, c] = *corners {
                     let squared_sine = squared_sine([a, b, c]);
                     if squared_sine < bound {
