@@ -105,7 +105,7 @@ mod tests {
     use voronoi::{Domain, Tessellation};
 
     use super::*;
-    use crate::{Junctions, Network};
+    use crate::{Junctions, LevelView, Network};
 
     #[test]
     fn a_wall_that_is_pushed_through_another_is_turned() {
@@ -128,5 +128,28 @@ mod tests {
             }
         }
         assert!(!dihedral_sectors.turned(&LevelPoints::held((&level.mesh).into(), &pushed)).is_empty());
+    }
+    #[test]
+    fn edges_of_levels_that_are_not_held_are_turned_as_those_of_whole_ones() {
+        let seeds: Vec<DVec3> =
+            (1..=12).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+        let cells = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&cells, Junctions::Corner, 2).expect("a small network");
+        let sides = network.sides();
+        let mut points = network.subdivide(&flat);
+        for (point, k) in points.iter_mut().zip(0u32..) {
+            *point += 0.05 * (DVec3::new(0.7549, 0.5698, 0.3247) * f64::from(k)).fract();
+        }
+        let turned = |level: LevelView<'_>| {
+            let surface = Surface::of_level(level.held(), &[], &sides);
+            let sectors = DihedralSectors::new(&surface, &Adjacency::of_level(level.held()));
+            let mut turned = sectors.turned(&LevelPoints::held(level.elements(), &points));
+            turned.iter_mut().for_each(|pair| pair.sort_unstable());
+            turned.sort_unstable();
+            turned
+        };
+        let of_whole = turned(network.level(2));
+        assert!(of_whole.len() > 20);
+        assert_eq!(turned(network.level_from_before(2)), of_whole);
     }
 }

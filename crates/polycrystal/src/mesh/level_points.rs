@@ -1,3 +1,5 @@
+//! The points of a level, as far as they are in memory.
+
 use std::borrow::Cow;
 
 use glam::DVec3;
