@@ -11,8 +11,11 @@ use crate::box_tree::sort_into_boxes;
 const SEEDS_PER_BLOCK: f64 = 8.0;
 
 /// Fewest and most blocks in a tile, nearly: what lies on the sides of a tile is worked out on both sides, and a tile is the unit
-/// of work that threads share out.
-const BLOCKS_PER_TILE: [f64; 2] = [500.0, 6000.0];
+/// of work that threads share out. Of 12 000 seeds with two threads, 8 tiles take 0.69 of the time of one, with one thread 1.07.
+const BLOCKS_PER_TILE: [f64; 2] = [250.0, 6000.0];
+
+/// Fewest blocks for two tiles where more would be too small. Of 4000 seeds they take 0.66 of the time of one with two threads, with one thread 1.19.
+const BLOCKS_OF_TWO_TILES: f64 = 200.0;
 
 /// Tiles, where that leaves them neither too small nor too large.
 const TILES: f64 = 8.0;
@@ -259,7 +262,7 @@ fn tile_counts(blocks: IVec3) -> IVec3 {
     let mut tiles = cubes_along(blocks.as_dvec3(), block_count / blocks_per_tile).round().as_ivec3();
     let count = tiles.element_product();
     // Threads take tiles in turn, and mostly there is an even number of them.
-    if count > 1 && count % 2 == 1 {
+    if count % 2 == 1 && (count > 1 || block_count >= BLOCKS_OF_TWO_TILES) {
         tiles[blocks.max_position()] += 1;
     }
     tiles
