@@ -76,19 +76,20 @@ impl DihedralSector {
         let elements = points.elements();
         let refined = elements.refined_triangle();
         let own = self.labelled.map(|labelled| points.of(labelled));
-        let [along, mut other] =
-            self.edges.map(|edge| refined.along_edges[usize::from(edge)].iter().collect::<Vec<_>>());
-        if !self.is_alike {
-            other.reverse();
-        }
-        let places = along.into_iter().zip(other).filter(|(one, other)| {
-            let corners = |own: &[DVec3; 15], (place, edge): (usize, usize)| {
-                [0, 1, 2].map(|turn| own[refined.triangles[place][(edge + turn) % 3]])
+        let [along, other] = self.edges.map(|edge| refined.along_edges[usize::from(edge)]);
+        let last = along.len() - 1;
+        let edges =
+            (0..=last).map(|at| [along[at], if self.is_alike { other[at] } else { other[last - at] }]);
+        let turned = edges.filter(|edges| {
+            let corners = |k: usize| {
+                let (place, edge) = edges[k];
+                [0, 1, 2].map(|turn| own[k][refined.triangles[place][(edge + turn) % 3]])
             };
-            is_turned(self.opening([corners(&own[0], **one), corners(&own[1], **other)]))
+            is_turned(self.opening([corners(0), corners(1)]))
         });
-        let in_places = |places: [usize; 2]| [0, 1].map(|k| elements.element_in(self.labelled[k], places[k]));
-        places.map(|(one, other)| in_places([one.0, other.0])).collect()
+        let elements_at =
+            |edges: [(usize, usize); 2]| [0, 1].map(|k| elements.element_in(self.labelled[k], edges[k].0));
+        turned.map(elements_at).collect()
     }
 
     /// Cosine and sine of the grain's angle at two elements, given by the edge as each runs along it, and the corner beside it.

@@ -21,16 +21,16 @@ const VOLUME_STEPS: usize = 40;
 impl<'a> Flow<'a> {
     /// Makes volumes right where that is asked for; gives the points of the finest level.
     pub(crate) fn restored(&self, points: &mut [DVec3]) -> Result<LevelPoints<'a>, NetworkError> {
-        if self.volumes == Volumes::Kept {
-            self.restore_volumes(points)?;
+        match self.volumes {
+            Volumes::Kept => self.restore_volumes(points),
+            Volumes::Free => Ok(self.finest_points(points)),
         }
-        Ok(self.finest_points(points))
     }
 
-    /// Moves points so that the grains of the finest level have the volumes of their cells.
+    /// Moves points so that the grains of the finest level have the volumes of their cells; gives the points of that level.
     ///
     /// Where short edges that are rigid leave some grain no way to change its volume, nothing is rigid.
-    pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+    pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<LevelPoints<'a>, NetworkError> {
         let start = points.to_vec();
         let mut attempts = Vec::new();
         match self.restore_with(&self.with_short_edges(&self.copies, points), &start, points) {
@@ -49,7 +49,7 @@ impl<'a> Flow<'a> {
         groups: &TiedPoints,
         start: &[DVec3],
         points: &mut [DVec3],
-    ) -> Result<(), NetworkError> {
+    ) -> Result<LevelPoints<'a>, NetworkError> {
         // Where volumes are right already, nothing is asked of it.
         let response = LazyCell::new(|| {
             let groups = groups.number();
@@ -64,7 +64,8 @@ impl<'a> Flow<'a> {
         let mut step = 0;
         loop {
             check_cancelled();
-            let missing = self.missing(&volumes_at_end(self.network, self.level, points));
+            let surface = self.finest_points(points);
+            let missing = self.missing(&volumes_at_end(self.network, &surface));
             let (grain, relative_error) = self.largest_error(&missing);
             let mut stalled = false;
             if let Some(last) = &last {
@@ -75,8 +76,10 @@ impl<'a> Flow<'a> {
             let is_right = relative_error <= VOLUME_RESTORED
                 || stalled && is_rounding(self.network, &missing, self.level, points);
             if is_right {
-                return Ok(());
+                return Ok(surface);
             }
+            // What corrections are made of takes as much memory.
+            drop(surface);
             let (groups, response) = &*response;
             // A correction that makes things worse (NaN included) would only be followed by others, and what moves as a whole stays as wrong as it is.
             let is_hopeless = relative_error.is_nan() || relative_error >= 1.0 || !response.can_change(grain);
@@ -103,15 +106,15 @@ impl<'a> Flow<'a> {
 
 /// Whether grains have the volumes of their cells on the finest level, up to rounding, for the points of a level.
 pub(crate) fn has_kept_volumes(network: &Network, level: usize, points: &[DVec3]) -> bool {
-    let missing = missing_volumes(network, &volumes_at_end(network, level, points));
+    let surface = network.points_between(level, network.level_count(), points);
+    let missing = missing_volumes(network, &volumes_at_end(network, &surface));
     let (_, relative_error) = largest_relative_error(&missing, network.cell_volumes());
     relative_error <= VOLUME_LIMIT || is_rounding(network, &missing, level, points)
 }
 
-/// The volumes of grains on the finest level, for the points of a level.
-fn volumes_at_end(network: &Network, level: usize, points: &[DVec3]) -> Vec<f64> {
-    let finest = network.level_count();
-    network.volumes_of(network.level_from_before(finest), &network.points_between(level, finest, points))
+/// The volumes of grains on the finest level, which has these points.
+fn volumes_at_end(network: &Network, surface: &LevelPoints<'_>) -> Vec<f64> {
+    network.volumes_of(network.level_from_before(network.level_count()), surface)
 }
 
 /// What each grain's volume lacks.
