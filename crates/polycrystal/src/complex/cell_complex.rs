@@ -2,10 +2,20 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use voronoi::{CellId, Domain, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
 use crate::complex::edge::ComplexEdge;
 use crate::mesh::id::id;
+
+/// The corners of a face, in place up to so many: faces have five on average.
+pub(super) type Corners = SmallVec<[PeriodicVertex; 8]>;
+
+/// The faces at a vertex, in place up to six: as many as lie between four sides.
+pub(super) type FacesAt = SmallVec<[u32; 6]>;
+
+/// The faces of a cell, in place up to so many: random cells have 15.5 on average.
+pub(super) type FacesOf = SmallVec<[u32; 16]>;
 
 /// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
 /// periodic domain.
@@ -20,9 +30,9 @@ pub struct CellComplex {
     pub vertices: Vec<DVec3>,
     pub(super) faces: Vec<Face>,
     /// The faces at each vertex; none where it is gone.
-    pub(super) faces_at: Vec<Vec<u32>>,
+    pub(super) faces_at: Vec<FacesAt>,
     /// The faces of each cell; one between a cell and its own image comes twice.
-    pub(super) faces_of: Vec<Vec<u32>>,
+    pub(super) faces_of: Vec<FacesOf>,
 }
 
 /// A polygon between two sides, as its first side, a cell, sees it.
@@ -30,7 +40,7 @@ pub struct CellComplex {
 pub(super) struct Face {
     pub(super) sides: [Side; 2],
     /// Counter-clockwise as seen from the second side; none where the face is gone.
-    pub(super) corners: Vec<PeriodicVertex>,
+    pub(super) corners: Corners,
 }
 
 impl From<&Tessellation> for CellComplex {
@@ -50,8 +60,8 @@ impl From<&Tessellation> for CellComplex {
             seeds: tessellation.seeds().to_vec(),
             vertices: tessellation.vertices()[..vertex_count].to_vec(),
             faces: Vec::new(),
-            faces_at: vec![Vec::new(); vertex_count],
-            faces_of: vec![Vec::new(); tessellation.cell_count()],
+            faces_at: vec![FacesAt::new(); vertex_count],
+            faces_of: vec![FacesOf::new(); tessellation.cell_count()],
         };
         faces.for_each(|face| {
             complex.add_face(face);
@@ -131,10 +141,10 @@ impl CellComplex {
         self.faces[face.index()].sides
     }
 
-    /// All faces at some vertices, sorted.
-    pub fn faces_at(&self, vertices: &[u32]) -> Vec<FaceId> {
+    /// All faces at some vertices, sorted; in place those at the four of a boundary.
+    pub(crate) fn faces_at(&self, vertices: &[u32]) -> SmallVec<[FaceId; 24]> {
         let faces = vertices.iter().flat_map(|vertex| &self.faces_at[*vertex as usize]);
-        let mut faces: Vec<FaceId> = faces.copied().map(FaceId).collect();
+        let mut faces: SmallVec<[FaceId; 24]> = faces.copied().map(FaceId).collect();
         faces.sort_unstable();
         faces.dedup();
         faces
@@ -142,9 +152,8 @@ impl CellComplex {
 
     /// The faces that meet at an edge, sorted.
     pub fn faces_of_edge(&self, edge: ComplexEdge) -> Vec<FaceId> {
-        let mut faces = self.faces_at(&[edge.start]);
-        faces.retain(|face| self.is_edge_of(edge, *face));
-        faces
+        let faces = self.faces_at(&[edge.start]).into_iter();
+        faces.filter(|face| self.is_edge_of(edge, *face)).collect()
     }
 
     /// The walls that a vertex lies on, sorted.
@@ -189,7 +198,7 @@ impl CellComplex {
 
     pub(super) fn add_vertex(&mut self, position: DVec3) -> PeriodicVertex {
         self.vertices.push(position);
-        self.faces_at.push(Vec::new());
+        self.faces_at.push(FacesAt::new());
         PeriodicVertex { vertex: id(self.vertices.len() - 1), translation: Translation::ZERO }
     }
 }

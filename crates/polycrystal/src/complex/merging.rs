@@ -2,7 +2,7 @@
 
 use voronoi::{CellId, FaceId, PeriodicVertex, Side, Translation};
 
-use crate::complex::cell_complex::{CellComplex, Face};
+use crate::complex::cell_complex::{CellComplex, Corners, Face};
 use crate::complex::edge::ComplexEdge;
 use crate::complex::star::FaceAt;
 
@@ -50,7 +50,7 @@ impl CellComplex {
         let before = self.clone();
         self.remove_face(face.0);
         for other in others {
-            let corners: Vec<PeriodicVertex> = self.corners_at(other).collect();
+            let corners: Corners = self.corners_at(other).collect();
             let sides = self
                 .sides_at(other)
                 .map(|side| if side == own { Side::Image(neighbor, place) } else { side });
@@ -103,7 +103,7 @@ impl CellComplex {
             }
             let place = if corners[last].vertex == end.vertex { end } else { start };
             let at = FaceAt { face: face.0, offset: place.translation - corners[last].translation };
-            let mut ring: Vec<PeriodicVertex> = self.corners_at(at).collect();
+            let mut ring: Corners = self.corners_at(at).collect();
             ring.rotate_left((last + 1) % count);
             Some((self.sides_at(at), ring))
         });
@@ -203,7 +203,7 @@ impl CellComplex {
                     return false;
                 }
                 let rings = [from(one, first), from(other, second)];
-                let ring: Vec<PeriodicVertex> = rings.iter().flat_map(|ring| &ring[1..]).copied().collect();
+                let ring: Corners = rings.iter().flat_map(|ring| &ring[1..]).copied().collect();
                 let is_twice = rings[0][1..].iter().any(|corner| rings[1][1..].contains(corner));
                 if is_twice {
                     return false;

@@ -3,7 +3,7 @@
 
 use voronoi::{CellId, FaceId, PeriodicVertex, Side, Translation, Wall};
 
-use crate::complex::cell_complex::{CellComplex, Face, cell_of};
+use crate::complex::cell_complex::{CellComplex, Corners, Face, cell_of};
 use crate::complex::star::FaceAt;
 use crate::mesh::id::id;
 
@@ -106,9 +106,9 @@ impl CellComplex {
             self.faces_at[new.vertex as usize].push(face.0);
         }
         let face: Face = if cell_of(left).is_some() {
-            self.face_between([left, right], vec![old, new])
+            self.face_between([left, right], Corners::from_slice(&[old, new]))
         } else {
-            self.face_between([right, left], vec![new, old])
+            self.face_between([right, left], Corners::from_slice(&[new, old]))
         };
         let number = FaceId(id(self.faces.len()));
         self.add_face(face);
@@ -184,7 +184,7 @@ impl CellComplex {
         for number in others {
             let Face { sides, corners } = self.faces[number as usize].clone();
             let (other, back) = beyond(sides);
-            let corners: Vec<PeriodicVertex> = corners.into_iter().map(|corner| corner.moved(back)).collect();
+            let corners: Corners = corners.into_iter().map(|corner| corner.moved(back)).collect();
             let between =
                 if sides[0] == Side::Cell(cell) { [own, image(other)] } else { [image(other), own] };
             let new = self.face_between(between, corners.clone());

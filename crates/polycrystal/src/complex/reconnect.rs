@@ -4,9 +4,10 @@
 //! of closed balls as long as what comes in is not there yet (Okuda, Inoue, Eiraku, Sasai and Adachi 2013 call them I-H and H-I).
 
 use glam::DVec3;
+use smallvec::SmallVec;
 use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
-use crate::complex::cell_complex::{CellComplex, Face, cell_of};
+use crate::complex::cell_complex::{CellComplex, Corners, Face, cell_of};
 use crate::complex::edge::ComplexEdge;
 use crate::complex::star::{FaceAt, Star};
 use crate::mesh::id::id;
@@ -52,7 +53,7 @@ impl CellComplex {
     /// Whether two faces have no corner in common.
     fn are_apart(&self, faces: [Option<FaceAt>; 2]) -> bool {
         let [Some(first), Some(second)] = faces else { return true };
-        let corners: Vec<PeriodicVertex> = self.corners_at(second).collect();
+        let corners: Corners = self.corners_at(second).collect();
         self.corners_at(first).all(|corner| !corners.contains(&corner))
     }
 
@@ -68,7 +69,7 @@ impl CellComplex {
     pub(crate) fn put_triangle(&mut self, edge: ComplexEdge, star: &Star, positions: [DVec3; 3]) -> FaceId {
         let ends = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
         let corners = positions.map(|position| self.add_vertex(position));
-        let mut loops = [Vec::new(), Vec::new()];
+        let mut loops: [SmallVec<[_; 3]>; 2] = [SmallVec::new(), SmallVec::new()];
         for (end, place) in ends.into_iter().enumerate() {
             for (k, at) in star.beyond[end].iter().enumerate() {
                 let Some(at) = at else { continue };
@@ -92,7 +93,7 @@ impl CellComplex {
         let (pair, is_outward) = loops[first][0];
         let runs_up = (pair[1] == (pair[0] + 1) % 3) != is_outward;
         let corners = if runs_up { corners } else { [corners[0], corners[2], corners[1]] };
-        let face = self.face_between([star.ends[first], star.ends[1 - first]], corners.to_vec());
+        let face = self.face_between([star.ends[first], star.ends[1 - first]], Corners::from_slice(&corners));
         self.add_face(face);
         FaceId(id(self.faces.len() - 1))
     }
@@ -132,19 +133,20 @@ impl CellComplex {
 
     /// The corner of a face before another one.
     fn previous_corner(&self, at: FaceAt, corner: PeriodicVertex) -> PeriodicVertex {
-        let corners: Vec<PeriodicVertex> = self.corners_at(at).collect();
+        let corners: Corners = self.corners_at(at).collect();
         let place = corners.iter().position(|other| *other == corner).expect("a face has its corners");
         corners[(place + corners.len() - 1) % corners.len()]
     }
 
     /// Replaces one or two corners of a face that follow each other, in either order.
     fn replace(&mut self, at: FaceAt, old: &[PeriodicVertex], new: &[PeriodicVertex]) {
-        let mut corners: Vec<PeriodicVertex> = self.corners_at(at).collect();
+        let mut corners: Corners = self.corners_at(at).collect();
         // The face may begin between the two.
         while !old.contains(&corners[0]) || old.contains(&corners[corners.len() - 1]) {
             corners.rotate_left(1);
         }
-        corners.splice(..old.len(), new.iter().copied());
+        corners.drain(..old.len());
+        corners.insert_from_slice(0, new);
         for corner in old {
             self.faces_at[corner.vertex as usize].retain(|face| *face != at.face);
         }
@@ -157,7 +159,7 @@ impl CellComplex {
     }
 
     /// A face between a cell and another side, whose corners are in the order in which the cell sees them.
-    pub(super) fn face_between(&self, sides: [Side; 2], mut corners: Vec<PeriodicVertex>) -> Face {
+    pub(super) fn face_between(&self, sides: [Side; 2], mut corners: Corners) -> Face {
         let [Side::Image(mut first, mut from), mut second] = sides else {
             unreachable!("a face has a cell on its first side")
         };

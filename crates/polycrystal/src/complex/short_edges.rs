@@ -11,8 +11,10 @@
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use voronoi::{CellId, Dimension, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
+use crate::complex::cell_complex::Corners;
 use crate::complex::edge::ComplexEdge;
 use crate::complex::ring::{is_folded, is_star_shaped};
 
@@ -93,11 +95,11 @@ struct Complex<'a> {
     future: Vec<DVec3>,
     /// Original vertices that each stands for.
     weights: Vec<f64>,
-    walls: Vec<Vec<Wall>>,
+    walls: Vec<SmallVec<[Wall; 3]>>,
     /// The corners of each face; empty for those that have collapsed.
-    faces: Vec<Vec<PeriodicVertex>>,
+    faces: Vec<Corners>,
     /// The faces at each vertex, moved to where it has its own place; empty for those that have merged into another.
-    faces_at: Vec<Vec<MovedFace>>,
+    faces_at: Vec<SmallVec<[MovedFace; 6]>>,
     /// Number of faces that each cell has.
     face_counts: Vec<usize>,
     /// Length below which an edge of each cell is short.
@@ -111,12 +113,12 @@ impl<'a> Complex<'a> {
     fn new(original: &'a Tessellation, length: f64, future: &[DVec3], is_strict: Vec<bool>) -> Self {
         let count = original.vertices().len() - original.periodic_vertices().len();
         let face_count = original.face_count() - original.periodic_faces().len();
-        let mut walls = vec![Vec::new(); count];
-        let mut faces_at = vec![Vec::new(); count];
+        let mut walls = vec![SmallVec::new(); count];
+        let mut faces_at = vec![SmallVec::new(); count];
         let mut faces = Vec::with_capacity(face_count);
         for face in original.faces().take(face_count) {
             check_cancelled();
-            let corners: Vec<PeriodicVertex> =
+            let corners: Corners =
                 original.face_corners(face).iter().map(|vertex| original.periodic_vertex(*vertex)).collect();
             for PeriodicVertex { vertex, translation } in &corners {
                 faces_at[*vertex as usize]

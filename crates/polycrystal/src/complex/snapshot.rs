@@ -1,18 +1,19 @@
 //! Going back.
 
 use glam::DVec3;
+use smallvec::SmallVec;
 use voronoi::CellId;
 
-use crate::complex::cell_complex::{CellComplex, Face, cell_of};
+use crate::complex::cell_complex::{CellComplex, Face, FacesAt, FacesOf, cell_of};
 
 /// What a [`CellComplex`] was like around some vertices.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     vertex_count: usize,
     face_count: usize,
-    vertices: Vec<(u32, DVec3, Vec<u32>)>,
+    vertices: Vec<(u32, DVec3, FacesAt)>,
     faces: Vec<(u32, Face)>,
-    faces_of: Vec<(usize, Vec<u32>)>,
+    faces_of: Vec<(usize, FacesOf)>,
 }
 
 impl CellComplex {
@@ -20,7 +21,7 @@ impl CellComplex {
     pub fn snapshot(&self, vertices: &[u32]) -> Snapshot {
         let faces = self.faces_at(vertices);
         let sides = faces.iter().flat_map(|face| self.faces[face.index()].sides);
-        let mut cells: Vec<usize> = sides.filter_map(cell_of).map(CellId::index).collect();
+        let mut cells: SmallVec<[usize; 32]> = sides.filter_map(cell_of).map(CellId::index).collect();
         cells.sort_unstable();
         cells.dedup();
         let place = |vertex: &u32| {

@@ -1,5 +1,6 @@
 //! What lies around an edge or a triangle where all is in general position.
 
+use smallvec::SmallVec;
 use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
 use crate::complex::cell_complex::{CellComplex, cell_of};
@@ -34,10 +35,10 @@ pub(super) struct FaceAt {
 
 /// What lies around a vertex where four sides meet: the sides, faces by pairs and edges by triples of them.
 struct VertexStar {
-    sides: Vec<Side>,
-    faces: Vec<(FaceAt, [Side; 2])>,
+    sides: SmallVec<[Side; 12]>,
+    faces: SmallVec<[(FaceAt, [Side; 2]); 6]>,
     /// Other ends of edges.
-    edges: Vec<(PeriodicVertex, Vec<Side>)>,
+    edges: SmallVec<[(PeriodicVertex, SmallVec<[Side; 6]>); 4]>,
 }
 
 impl VertexStar {
@@ -151,11 +152,7 @@ impl CellComplex {
     /// What lies around a vertex in general position. A face may come to it twice: that of a cell that meets itself beyond a period.
     fn vertex_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
         let faces = self.faces_at(&[place.vertex]);
-        let mut star = VertexStar {
-            sides: Vec::with_capacity(2 * faces.len()),
-            faces: Vec::with_capacity(faces.len()),
-            edges: Vec::with_capacity(faces.len()),
-        };
+        let mut star = VertexStar { sides: SmallVec::new(), faces: SmallVec::new(), edges: SmallVec::new() };
         for FaceId(face) in faces {
             let corners = &self.faces[face as usize].corners;
             for k in (0..corners.len()).filter(|k| corners[*k].vertex == place.vertex) {
@@ -167,7 +164,7 @@ impl CellComplex {
                     let other = corners[k % corners.len()];
                     let other = PeriodicVertex { translation: other.translation + at.offset, ..other };
                     let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
-                        star.edges.push((other, Vec::new()));
+                        star.edges.push((other, SmallVec::new()));
                         star.edges.len() - 1
                     });
                     star.edges[known].1.extend(sides);

@@ -8,6 +8,7 @@ mod descent;
 mod fan;
 
 use glam::DVec3;
+use smallvec::SmallVec;
 use voronoi::{CellId, FaceId};
 
 use crate::energy::shape::Shape;
@@ -34,13 +35,22 @@ pub(crate) struct Conditions<'a> {
 /// By how much the volume of each cell is above what it is to be.
 pub(crate) type Excess = [f64];
 
+/// What there is for each vertex that moves, in place for an edge, a triangle or a boundary with four sides.
+type OfVertices<T> = SmallVec<[T; 4]>;
+
+/// What there is for each cell around, in place for the five at an edge and some more.
+type OfCells<T> = SmallVec<[T; 8]>;
+
+/// What there is for each corner and each centre, in place for the nine faces at an edge and some more.
+type OfCorners<T> = SmallVec<[T; 64]>;
+
 /// Boundaries around vertices that move.
 #[derive(Clone)]
 pub(crate) struct LocalArea {
-    freedoms: Vec<Freedom>,
-    points: Vec<DVec3>,
+    freedoms: OfVertices<Freedom>,
+    points: OfVertices<DVec3>,
     faces: Vec<Polygon>,
-    cells: Vec<Cell>,
+    cells: OfCells<Cell>,
 }
 
 /// A cell around.
@@ -60,11 +70,11 @@ struct Cell {
 
 #[derive(Clone)]
 struct Polygon {
-    corners: Vec<Place>,
+    corners: SmallVec<[Place; 8]>,
     /// From the mean of the corners to the centre.
     bulge: DVec3,
     tension: f64,
-    beside: Vec<Beside>,
+    beside: SmallVec<[Beside; 2]>,
 }
 
 /// A cell on one side of a face.
@@ -95,7 +105,7 @@ impl LocalArea {
         excess: &Excess,
     ) -> Self {
         let domain = complex.domain();
-        let mut cells: Vec<Cell> = Vec::new();
+        let mut cells = OfCells::<Cell>::new();
         let mut number = |id: CellId| {
             cells.iter().position(|cell| cell.id == id).unwrap_or_else(|| {
                 let whole = volumes[id.index()];
@@ -157,15 +167,14 @@ impl LocalArea {
     }
 
     /// The corners of each face, and its centre after them, one face after the other.
-    fn rings(&self) -> Vec<DVec3> {
-        let count = self.faces.iter().map(|face| face.corners.len() + 1).sum();
-        let mut rings = Vec::with_capacity(count);
+    fn rings(&self) -> OfCorners<DVec3> {
+        let mut rings = SmallVec::new();
         self.place_rings(&self.points, &mut rings);
         rings
     }
 
     /// As [`Self::rings`] for vertices at other points.
-    fn place_rings(&self, points: &[DVec3], rings: &mut Vec<DVec3>) {
+    fn place_rings(&self, points: &[DVec3], rings: &mut OfCorners<DVec3>) {
         rings.clear();
         for face in &self.faces {
             let start = rings.len();
@@ -189,13 +198,13 @@ impl LocalArea {
     }
 
     /// The volumes between the faces of each cell and the origin.
-    fn volumes(&self, rings: &[DVec3]) -> Vec<f64> {
+    fn volumes(&self, rings: &[DVec3]) -> OfCells<f64> {
         self.volumes_and_normals(rings, |_| ())
     }
 
     /// The same, and shows the normals of all triangles, twice as long as their areas, one face after the other.
-    fn volumes_and_normals(&self, rings: &[DVec3], mut show: impl FnMut(DVec3)) -> Vec<f64> {
-        let mut volumes = vec![0.0; self.cells.len()];
+    fn volumes_and_normals(&self, rings: &[DVec3], mut show: impl FnMut(DVec3)) -> OfCells<f64> {
+        let mut volumes: OfCells<f64> = SmallVec::from_elem(0.0, self.cells.len());
         for (face, fan) in self.fans(rings) {
             let mut sum = DVec3::ZERO;
             for normal in fan.normals() {

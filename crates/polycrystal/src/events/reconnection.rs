@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use voronoi::{CellId, FaceId, Side};
 
 use crate::energy::local_size::LocalSize;
@@ -407,10 +408,11 @@ impl Place {
         let small = faces.into_iter().filter(|face| complex.corners(*face).len() <= 4);
         let corners = small.flat_map(|face| complex.corners(face)).map(|corner| corner.vertex);
         let ends = match self {
-            Self::Triangle(_) => Vec::new(),
-            Self::Line(edge) => edge.vertices().to_vec(),
+            Self::Triangle(_) => None,
+            Self::Line(edge) => Some(edge.vertices()),
         };
-        let vertices: Vec<u32> = corners.chain(ends).collect();
+        let ends = ends.into_iter().flatten();
+        let vertices: SmallVec<[u32; 16]> = corners.chain(ends).collect();
         let sides = complex.faces_at(&vertices).into_iter().flat_map(|face| complex.sides(face));
         let cells = sides.filter_map(|side| cell_and_offset(side, complex.domain()));
         let mut cells: Vec<CellId> = cells.map(|(cell, _)| cell).collect();

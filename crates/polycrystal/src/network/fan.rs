@@ -4,6 +4,7 @@
 //! there, which takes a part of the first one's ring over, makes two round fans of one.
 
 use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 
 use crate::complex::ring::LARGEST_BEND;
 use crate::mesh::id::id;
@@ -23,6 +24,9 @@ const FEWEST_SEGMENTS: usize = 2;
 /// Sweeps in which each centre goes to the mean of its neighbours, as it will during relaxation.
 const SWEEPS: usize = 6;
 
+/// The neighbours round a centre, in place up to so many: five corners, as many middles and other centres.
+type Ring = SmallVec<[u32; 16]>;
+
 /// A boundary's outline, some centres within, and triangles between them.
 #[derive(Clone)]
 pub(crate) struct Fan {
@@ -30,7 +34,7 @@ pub(crate) struct Fan {
     /// Those of the outline, then the centres.
     points: Vec<DVec3>,
     /// The neighbours round each centre, counter-clockwise.
-    rings: Vec<Vec<u32>>,
+    rings: SmallVec<[Ring; MOST_CENTERS]>,
     /// The sum of the triangles' normals, each as long as twice the area: the same whatever is inside the outline.
     normal: DVec3,
 }
@@ -43,7 +47,7 @@ impl Fan {
         let normal = outline.iter().zip(next).map(|(a, b)| (*a - center).cross(*b - center)).sum();
         let mut points = outline.to_vec();
         points.push(center);
-        Self { outline: outline.len(), points, rings: vec![(0..id(outline.len())).collect()], normal }
+        Self { outline: outline.len(), points, rings: smallvec![(0..id(outline.len())).collect()], normal }
     }
 
     /// The fan around another centre where the outline's own does not see all of it: that of a long, bent boundary lies beside it.
@@ -141,7 +145,7 @@ impl Fan {
         let [old, new] = [center, self.rings.len()].map(|center| id(self.outline + center));
         let ring = &self.rings[center];
         let kept = &ring[first..=second];
-        let mut given = [&ring[second..], &ring[..=first]].concat();
+        let mut given: Ring = ring[second..].iter().chain(&ring[..=first]).copied().collect();
         fan.points
             .push(given.iter().map(|point| self.points[*point as usize]).sum::<DVec3>() / given.len() as f64);
         // Centres of the ring see the new one instead, or, at the ends of its part, beside the old one.

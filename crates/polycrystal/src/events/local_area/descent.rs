@@ -1,9 +1,10 @@
 //! The way down to the least area.
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::fan::Fan;
-use super::{Beside, LocalArea, Place};
+use super::{Beside, LocalArea, OfCells, OfCorners, OfVertices, Place};
 
 /// Most steps of descent.
 const STEPS: usize = 20;
@@ -24,6 +25,9 @@ const LARGEST_GROWTH: f64 = 10.0;
 /// most searches take some five steps.
 const PROGRESS: f64 = 1e-5;
 
+/// What there is for each two vertices that move, as many as [`OfVertices`].
+type OfPairs = SmallVec<[f64; 16]>;
+
 impl LocalArea {
     /// Moves the vertices down to the least area near by, or to one that is no more than `enough`, and gives that: no more than
     /// [`Self::area_now`].
@@ -40,7 +44,7 @@ impl LocalArea {
         for _ in 0..STEPS {
             let mut lower = None;
             for _ in 0..HALVINGS {
-                let moved: Vec<DVec3> =
+                let moved: OfVertices<DVec3> =
                     self.points.iter().zip(&direction).map(|(point, by)| *point - *by * step).collect();
                 self.place_rings(&moved, &mut rings);
                 let (moved_area, moved_slope) = self.area(&rings);
@@ -67,11 +71,12 @@ impl LocalArea {
     }
 
     /// The stiffness of the faces between the vertices: that of the linear elements that the fans are, in each direction the same.
-    pub(super) fn stiffness(&self, rings: &[DVec3]) -> Vec<f64> {
+    pub(super) fn stiffness(&self, rings: &[DVec3]) -> OfPairs {
         let count = self.points.len();
-        let mut stiffness = vec![0.0; count * count];
+        let mut stiffness = OfPairs::from_elem(0.0, count * count);
         let mut add = |i: usize, j: usize, value: f64| stiffness[i * count + j] += value;
-        let (mut rims, mut to_center) = (Vec::new(), Vec::new());
+        let mut rims: SmallVec<[f64; 8]> = SmallVec::new();
+        let mut to_center = rims.clone();
         for (face, Fan { ring, center }) in self.fans(rings) {
             let corners = ring.len();
             let cotangent_weight = |apex: DVec3, from: DVec3, to: DVec3| {
@@ -115,10 +120,10 @@ impl LocalArea {
     }
 
     /// The displacement under some forces, within what the walls leave.
-    fn solve(&self, stiffness: &[f64], forces: &[DVec3]) -> Vec<DVec3> {
+    fn solve(&self, stiffness: &[f64], forces: &[DVec3]) -> OfVertices<DVec3> {
         let count = forces.len();
-        let mut matrix = stiffness.to_vec();
-        let mut result = forces.to_vec();
+        let mut matrix = OfPairs::from_slice(stiffness);
+        let mut result: OfVertices<DVec3> = SmallVec::from_slice(forces);
         for pivot in 0..count {
             let diagonal = matrix[pivot * count + pivot];
             for row in pivot + 1..count {
@@ -142,18 +147,18 @@ impl LocalArea {
     }
 
     /// The area weighted by tension together with what cells resist, and how it changes with the points.
-    pub(super) fn area(&self, rings: &[DVec3]) -> (f64, Vec<DVec3>) {
-        let mut normals = Vec::with_capacity(rings.len());
+    pub(super) fn area(&self, rings: &[DVec3]) -> (f64, OfVertices<DVec3>) {
+        let mut normals = OfCorners::<DVec3>::new();
         let volumes = self.volumes_and_normals(rings, |normal| normals.push(normal));
         let mut area = 0.0;
-        let mut pulls = Vec::with_capacity(self.cells.len());
+        let mut pulls = OfCells::<f64>::new();
         for (cell, volume) in self.cells.iter().zip(volumes) {
             let excess = volume - cell.volume;
             area += (0.5 * cell.stiffness * excess - cell.pressure) * excess;
             pulls.push(cell.stiffness * excess - cell.pressure);
         }
-        let mut slope = vec![DVec3::ZERO; self.points.len()];
-        let mut normals = normals.into_iter();
+        let mut slope: OfVertices<DVec3> = SmallVec::from_elem(DVec3::ZERO, self.points.len());
+        let mut normals = normals.iter().copied();
         for (face, Fan { ring, center }) in self.fans(rings) {
             // All cells beside a face together pull on its cone from the origin, and on its area.
             let (mut pull, mut pull_of_offset) = (0.0, DVec3::ZERO);

@@ -73,7 +73,7 @@ fn the_search_goes_down_where_cells_lack_volume_under_high_pressure() {
 #[test]
 fn what_one_cell_loses_others_gain() {
     check_moved(|area, moved| {
-        let mut rings = Vec::new();
+        let mut rings = SmallVec::new();
         area.place_rings(moved, &mut rings);
         let volumes = area.volumes(&rings);
         let gains = || area.cells.iter().zip(&volumes).map(|(cell, volume)| volume - cell.volume);
@@ -121,7 +121,7 @@ fn slopes_are_those_of_the_area() {
     const STEP: f64 = 1e-6;
     check_moved(|area, moved| {
         let area_at = |points: &[DVec3]| {
-            let mut rings = Vec::new();
+            let mut rings = SmallVec::new();
             area.place_rings(points, &mut rings);
             area.area(&rings)
         };
