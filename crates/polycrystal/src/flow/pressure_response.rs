@@ -39,7 +39,7 @@ impl PressureResponse {
         let Some((constraint, compliance)) = &self.constraint else {
             return vec![DVec3::ZERO; self.mobility.len()];
         };
-        let pressures = compliance.pressures(changes, SOLVED);
+        let pressures = compliance.pressures(&constraint.in_order(changes), SOLVED);
         let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
         let mut moves: Vec<DVec3> =
             (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();
@@ -49,7 +49,8 @@ impl PressureResponse {
 
     /// Whether there are pressures that change the volume of a grain.
     pub(crate) fn can_change(&self, grain: GrainId) -> bool {
-        self.constraint.as_ref().is_some_and(|(_, compliance)| compliance.gives_way(grain))
+        let constraint = self.constraint.as_ref();
+        constraint.is_some_and(|(constraint, compliance)| compliance.gives_way(constraint.place(grain)))
     }
 
     /// Takes out what walls hold.

@@ -154,7 +154,8 @@ impl System {
             size = next;
         }
         if let Some((constraint, _)) = &self.response.constraint {
-            let change = constraint.volume_change(|unknown| displacement[unknown]);
+            pressures = constraint.of_grains(&pressures);
+            let change = constraint.of_grains(&constraint.volume_change(|unknown| displacement[unknown]));
             let left: Vec<f64> =
                 changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
             add(&mut displacement, 1.0, &self.response.displacement(&left));

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::solver::conjugate_gradients::{Limits, solve};
@@ -28,18 +29,51 @@ const HELD: f64 = 1e-9;
 const GRAINS_PER_TASK: usize = 64;
 
 /// How the volumes of grains change when groups move: a sparse matrix J with a vector for each group and grain.
+///
+/// Its grains are in the order in which groups come to them: groups that follow each other lie side by side, grains need not, and what a grain is asked for
+/// would come from all over the memory.
 pub(crate) struct VolumeConstraint {
     /// Of each group, its grains and the gradients of their volumes.
     by_group: CsrRows<DVec3>,
     /// Of each grain, its groups and the gradients of its volume.
     by_grain: CsrRows<DVec3>,
+    /// The place in this order of each of the network's grains.
+    places: Vec<u32>,
 }
 
 impl VolumeConstraint {
     /// That of so many grains, given [`Self::by_group`].
-    pub(crate) fn new(by_group: CsrRows<DVec3>, grain_count: usize) -> Self {
+    pub(crate) fn new(mut by_group: CsrRows<DVec3>, grain_count: usize) -> Self {
+        const NONE: u32 = u32::MAX;
+        let mut places = vec![NONE; grain_count];
+        let mut next = 0..;
+        let mut number = |place: &mut u32| {
+            if *place == NONE {
+                *place = next.next().expect("ids fit 32 bits");
+            }
+        };
+        by_group.columns().for_each(|grain| number(&mut places[grain as usize]));
+        places.iter_mut().for_each(number);
+        by_group.renumber_columns(&places);
         let by_grain = by_group.transposed(grain_count);
-        Self { by_group, by_grain }
+        Self { by_group, by_grain, places }
+    }
+
+    /// What each of the network's grains has, in the order of this matrix.
+    pub(crate) fn in_order(&self, of_grains: &[f64]) -> Vec<f64> {
+        let mut ordered = vec![0.0; of_grains.len()];
+        self.places.iter().zip(of_grains).for_each(|(place, value)| ordered[*place as usize] = *value);
+        ordered
+    }
+
+    /// What grains in the order of this matrix have, in that of the network.
+    pub(crate) fn of_grains(&self, ordered: &[f64]) -> Vec<f64> {
+        self.places.iter().map(|place| ordered[*place as usize]).collect()
+    }
+
+    /// The place of a grain in the order of this matrix.
+    pub(crate) fn place(&self, grain: GrainId) -> usize {
+        self.places[grain.index()] as usize
     }
 
     /// Of groups with these freedoms the grains and the gradients of their volumes: `fill` adds up those of a group. `rounding` is a last place
@@ -77,7 +111,7 @@ impl VolumeConstraint {
     pub(crate) fn compliance(&self, mobility: &[f64]) -> Compliance {
         let row = |grain: usize, row: &mut NewRow<'_, f64>| {
             // All products before any sum: groups come from all over the memory, and to look for a column waits for each of them.
-            let mut products = Vec::new();
+            let mut products: SmallVec<[_; 256]> = SmallVec::new();
             for (group, gradient) in self.by_grain.row(grain) {
                 let moved = *gradient * mobility[*group as usize];
                 let others = self.by_group.row(*group as usize).iter();
@@ -144,9 +178,9 @@ impl Compliance {
         Self { grids: Multigrid::new(matrix), diagonal, parts, held }
     }
 
-    /// Whether a grain gives way to any pressure: one that moves as a whole keeps its volume.
-    pub(crate) fn gives_way(&self, grain: GrainId) -> bool {
-        self.diagonal[grain.index()] > 0.0
+    /// Whether the grain at a place gives way to any pressure: one that moves as a whole keeps its volume.
+    pub(crate) fn gives_way(&self, place: usize) -> bool {
+        self.diagonal[place] > 0.0
     }
 
     /// The pressures that bring about the given changes of volume, up to an error of this share.

@@ -65,9 +65,7 @@ impl<T> CsrRows<T> {
         T: Copy + Default,
     {
         let mut counts = vec![0_u32; column_count];
-        for (column, _) in self.blocks.iter().flat_map(|block| &block.entries) {
-            counts[*column as usize] += 1;
-        }
+        self.columns().for_each(|column| counts[column as usize] += 1);
         let block = |counts: &mut [u32]| {
             let mut starts = vec![0];
             let mut end = 0;
@@ -88,6 +86,20 @@ impl<T> CsrRows<T> {
             }
         }
         Self { blocks, len: column_count }
+    }
+
+    /// The columns of all entries, row by row.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = u32> {
+        self.blocks.iter().flat_map(|block| &block.entries).map(|(column, _)| *column)
+    }
+
+    /// Gives each column the number that is listed for it.
+    pub(crate) fn renumber_columns(&mut self, numbers: &[u32])
+    where
+        T: Send,
+    {
+        let entries = self.blocks.par_iter_mut().flat_map_iter(|block| &mut block.entries);
+        entries.for_each(|(column, _)| *column = numbers[*column as usize]);
     }
 
     #[inline]
