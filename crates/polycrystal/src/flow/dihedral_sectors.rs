@@ -65,11 +65,6 @@ impl DihedralSectors {
     }
 }
 
-/// Whether an angle, given by cosine and sine, is so far above 180 degrees that it is rather one below 0.
-fn is_turned([cosine, sine]: [f64; 2]) -> bool {
-    cosine > LEAST_TURNED && sine < 0.0
-}
-
 impl DihedralSector {
     /// The elements at its edge, or those into which that is refined, where the grain is turned inside out.
     fn turned(&self, points: &LevelPoints<'_>) -> Vec<[u32; 2]> {
@@ -85,19 +80,24 @@ impl DihedralSector {
                 let (place, edge) = edges[k];
                 [0, 1, 2].map(|turn| own[k][refined.triangles[place][(edge + turn) % 3]])
             };
-            is_turned(self.opening([corners(0), corners(1)]))
+            self.is_turned([corners(0), corners(1)])
         });
         let elements_at =
             |edges: [(usize, usize); 2]| [0, 1].map(|k| elements.element_in(self.labelled[k], edges[k].0));
         turned.map(elements_at).collect()
     }
 
-    /// Cosine and sine of the grain's angle at two elements, given by the edge as each runs along it, and the corner beside it.
-    fn opening(&self, [[start, end, first], [_, _, second]]: [[DVec3; 3]; 2]) -> [f64; 2] {
-        let along = (end - start).normalize_or_zero();
-        let leg = |apex: DVec3| (apex - start).reject_from_normalized(along).normalize_or_zero();
-        let [first, second] = [first, second].map(leg);
-        [first.dot(second), f64::from(self.sense) * along.dot(first.cross(second))]
+    /// Whether the grain's angle at two elements is so far above 180 degrees that it is rather one below 0. They are given by the edge as each runs
+    /// along it, and the corner beside it.
+    fn is_turned(&self, [[start, end, first], [_, _, second]]: [[DVec3; 3]; 2]) -> bool {
+        let (edge, first, second) = (end - start, first - start, second - start);
+        let is_beyond = f64::from(self.sense) * edge.dot(first.cross(second)) < 0.0;
+        let cosine = || {
+            let [first, second] = [first, second].map(|leg| leg.reject_from(edge).normalize_or_zero());
+            first.dot(second)
+        };
+        // Few are above 180 degrees at all.
+        is_beyond && cosine() > LEAST_TURNED
     }
 }
 
