@@ -14,8 +14,8 @@ pub(super) type Corners = SmallVec<[PeriodicVertex; 8]>;
 /// The faces at a vertex, in place up to six: as many as lie between four sides.
 pub(super) type FacesAt = SmallVec<[u32; 6]>;
 
-/// The faces of a cell, in place up to so many: random cells have 15.5 on average.
-pub(super) type FacesOf = SmallVec<[u32; 16]>;
+/// The faces of a cell, in place up to so many: random cells have 15.5 on average, one in ten has more.
+pub(super) type FacesOf = SmallVec<[u32; 20]>;
 
 /// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
 /// periodic domain.

@@ -91,7 +91,7 @@ impl VolumeConstraint {
         CsrRows::made_by(freedoms.len(), row)
     }
 
-    /// The change of each grain's volume under displacements, given group by group: `J d`.
+    /// The change of each grain's volume, in the order of this matrix, under displacements, given group by group: `J d`.
     pub(crate) fn volume_change(&self, displacement: impl Fn(usize) -> DVec3 + Sync) -> Vec<f64> {
         let change = |grain: usize| {
             let row = self.by_grain.row(grain).iter();
@@ -100,7 +100,7 @@ impl VolumeConstraint {
         (0..self.by_grain.len()).into_par_iter().with_min_len(GRAINS_PER_TASK).map(change).collect()
     }
 
-    /// The force of the grains' pressures on a group: a row of `J^T p`.
+    /// The force of the grains' pressures, in the order of this matrix, on a group: a row of `J^T p`.
     #[inline]
     pub(crate) fn force(&self, pressures: &[f64], group: usize) -> DVec3 {
         let row = self.by_group.row(group).iter();
@@ -146,7 +146,7 @@ impl VolumeGradients<'_, '_> {
     }
 }
 
-/// How the volumes of grains answer to pressures: a symmetric matrix over the grains.
+/// How the volumes of grains answer to pressures: a symmetric matrix over the grains, in the order of their [`VolumeConstraint`].
 pub(crate) struct Compliance {
     grids: Multigrid,
     diagonal: Vec<f64>,
